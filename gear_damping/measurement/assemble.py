@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.angular_error import GEOMETRY, NEEDED, base_radius, is_angular_acceleration, turn_in
-from gear_damping.measurement.column_kinds import unit_at_end
 from gear_damping.measurement.cutting import is_faster, moved
 from gear_damping.measurement.declaration import ChannelPlan, Plan
 from gear_damping.measurement.declared_units import Conversion, UnitSystem, written
@@ -19,6 +18,7 @@ from gear_damping.measurement.encoders import (
 )
 from gear_damping.measurement.gaps import borne_out
 from gear_damping.measurement.held_together import check_together
+from gear_damping.measurement.named_units import gravity_at_end, unit_at_end
 from gear_damping.measurement.raw import SAME_UNIT, RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
 from gear_damping.measurement.record_checks import check_record
@@ -86,7 +86,7 @@ class Assembler:
     def _channel(self, raw: RawChannel, record: RawRecord, notes: list[str], findings: list[Finding]) -> Channel:
         plan = raw.plan
         conversion = self._conversion(plan, raw.unit, f"{plan.key}.unit")
-        findings += [found for found in (_unit_conflict(raw, conversion), _scale_beside(raw, record)) if found]
+        findings += [found for found in (_unit_conflict(raw, record, conversion), _scale_beside(raw, record)) if found]
         limits = {
             name: quantity.value * self._conversion(plan, quantity.unit, f"{plan.key}.{name}", written(quantity)).factor
             for name, quantity in plan.limits.items()
@@ -348,17 +348,31 @@ def _factor_unsaid(raw: RawChannel, said: str) -> Finding:
     return Finding("unit_conflict", message, channel=raw.plan.name)
 
 
-def _name_conflict(raw: RawChannel, said: str, stated: Unit) -> Finding | None:
-    """The name ends in a smaller or larger unit than that of the YAML, `x_um`."""
-    named = unit_at_end(raw.plan.column)
+def _name_conflict(raw: RawChannel, name: str, said: str, stated: Unit) -> Finding | None:
+    """The name of the column ends in a smaller or larger unit than that of the YAML, `x_um`."""
+    named = unit_at_end(name)
+    if named is None and gravity_at_end(name):
+        return _may_be_gravity(raw, name, said, stated)
     own = None if named is None else of_a_shaft(parse_unit(named), stated)
     if own is None or own.dimension != stated.dimension or abs(own.factor / stated.factor - 1) < SAME_UNIT:
         return None
     message = (
-        f"column '{raw.plan.column}' is named like one in {named} and the YAML says '{said}', which was used; correct "
+        f"column '{name}' is named like one in {named} and the YAML says '{said}', which was used; correct "
         "the one that is wrong, or write gain: 1 where it is the name"
     )
     return Finding("unit_conflict", message, channel=raw.plan.name)
+
+
+def _may_be_gravity(raw: RawChannel, name: str, said: str, stated: Unit) -> Finding | None:
+    """The name of an acceleration ends in a `g`, which may as well stand for the gear or the ground."""
+    gravity = parse_unit("g")
+    if gravity.dimension != stated.dimension or gravity.factor == stated.factor:
+        return None
+    message = (
+        f"column '{name}' ends in g and the YAML says '{said}', which was used; write unit: g where it is in that, or "
+        "gain: 1 where the name means something else"
+    )
+    return Finding("unit_conflict", message, channel=raw.plan.name, severity="note")
 
 
 def _scale_beside(raw: RawChannel, record: RawRecord) -> Finding | None:
@@ -375,12 +389,13 @@ def _scale_beside(raw: RawChannel, record: RawRecord) -> Finding | None:
     return Finding("not_applied", message, channel=raw.plan.name, severity="note")
 
 
-def _unit_conflict(raw: RawChannel, conversion: Conversion) -> Finding | None:
+def _unit_conflict(raw: RawChannel, record: RawRecord, conversion: Conversion) -> Finding | None:
     """The header names a unit and the YAML another one."""
     said = raw.plan.stated_unit or raw.unit
     stated = parse_unit(said)
     if raw.header_unit is None:
-        return None if raw.plan.is_scaled else _name_conflict(raw, said, stated)
+        name = record.table.names[record.table.index(raw.plan.column, raw.plan.key)]
+        return None if raw.plan.is_scaled else _name_conflict(raw, name, said, stated)
     if raw.header_unit == said:
         return None
     if step := multiple_of_a_unit(raw.header_unit):

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.measurement.angular_error import turn_in
-from gear_damping.units import is_of_kind
 
 TIME, CONSTANT, EMPTY, UNREADABLE, TURNING, COUNTER, PULSES, SIGNAL, ROW_NUMBER, ELSEWHERE = (
     "time stamps", "constant", "empty", "not readable", "turning angle", "counter", "pulses", "signal", "row number",
@@ -22,13 +21,6 @@ _BEYOND = 1.5  # times the way gone that an angle's range may be: a swing goes t
 _TURNS = {"rad": 2 * np.pi, "deg": 360.0, "rev": 1.0}  # one turn in each unit that an angle is written in
 _FEWEST_PLACES = 8  # of a turn, assumed: what has fewer values is switched, and no angle
 _NEAR_TURN = 0.03  # of a turn: a ramp that ends so near to it wraps there
-NAMED_UNITS = {  # that names of columns end in
-    "mm": "mm", "um": "um", "cm": "cm", "deg": "deg", "mrad": "mrad", "rad": "rad", "rpm": "rpm", "nm": "N*m",
-    "mv": "mV", "volt": "V", "volts": "V", "degrees": "deg", "radians": "rad", "mps2": "m/s^2",
-    "urad": "urad", "arcsec": "arcsec",
-}  # fmt: skip
-_COMPOUND = re.compile(r"(?:^|[\s_.\-])(?P<unit>1/min|(?:[^\W\d_]|°)+[/*·][^\s_]+)\s*$")  # `acc_m/s^2`, `n 1/min`
-_OF_CHANNELS = ("m/s", "m/s^2", "rad/s", "rad/s^2", "N*m")  # others may be a symbol over its unit: `F_t/N` in tonnes
 
 
 def kind_of(values: NDArray[np.float64], name: str, unit: str | None) -> tuple[str, str]:
@@ -159,24 +151,3 @@ def _advancing(values: NDArray, name: str, unit: str | None) -> tuple[str, str] 
         turns = f", by {gone / turn:.4g} turns" if turn else ""
         return TURNING, f"advances one way{turns}"
     return None
-
-
-def unit_of_name(reference: str | int) -> str | None:
-    """The unit that the name of a column ends in, or that it is, as in `V1`."""
-    is_voltage = re.search(r"(^|[_\s/.\[\](])[UV]\d+$", str(reference).strip(")] "))  # a small v may be a velocity
-    return unit_at_end(reference) or ("V" if is_voltage else None)
-
-
-def unit_at_end(reference: str | int) -> str | None:
-    """The unit that the name of a column ends in, as in `speed_rpm`."""
-    if compound := compound_at_end(str(reference)):
-        return compound
-    words = re.split(r"[_\s/.\[\](]+", str(reference).strip(")] "))
-    return NAMED_UNITS.get(words[-1].lower()) if len(words) > 1 else None
-
-
-def compound_at_end(name: str) -> str | None:
-    """The unit of several factors that a name ends in or is, as in `acc_m/s^2`; None of any other name."""
-    found = _COMPOUND.search(name)
-    unit = found["unit"] if found else None
-    return unit if unit == "1/min" or any(is_of_kind(unit, kind) for kind in _OF_CHANNELS) else None

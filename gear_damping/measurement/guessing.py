@@ -10,18 +10,17 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError
 from gear_damping.measurement.column_kinds import (
     COUNTER,
-    NAMED_UNITS,
     PULSES,
     TURNING,
     counts_of_turn,
     rises,
     turn_of,
-    unit_of_name,
     unit_of_turn,
 )
 from gear_damping.measurement.files import UNKNOWN
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.inspection import Column, Inspection, clock_of, inspect_table, of_columns
+from gear_damping.measurement.named_units import NAMED_UNITS, unit_of_name
 from gear_damping.measurement.staircase import is_staircase, rests_between_jumps
 from gear_damping.measurement.vocabulary import INPUTS
 from gear_damping.units import parse_unit

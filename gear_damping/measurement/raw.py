@@ -16,6 +16,7 @@ from gear_damping.measurement.declaration import ChannelPlan, EncoderPlan, Recor
 from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, pulse_times, shaft_angle
 from gear_damping.measurement.file_clocks import FileClocks, conflict_with_file, two_clocks
 from gear_damping.measurement.formats.table import Table
+from gear_damping.measurement.named_units import unit_at_end
 from gear_damping.measurement.rows import LEAST_SAMPLES, MOST_MISSING, Columns, Rows, filled_in, last_number
 from gear_damping.measurement.stamp_units import (
     completed_by,
@@ -26,7 +27,7 @@ from gear_damping.measurement.stamp_units import (
     refuse_row_numbers,
     refuse_steps,
 )
-from gear_damping.measurement.time_column import is_time
+from gear_damping.measurement.time_column import is_time, unit_by_name
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 from gear_damping.schema.values import Problems
 from gear_damping.units import multiple_of_a_unit, parse_unit, scaled_unit, to_si
@@ -267,10 +268,12 @@ class RawReader:
 
     def _in_seconds(self, timing: TimePlan, key: str) -> float:
         """One unit of the time stamps in s."""
-        header = self.table.unit(self.table.index(timing.column, key))
+        place = self.table.index(timing.column, key)
+        header = self.table.unit(place)
         unit = timing.unit or header
         if unit is None:
-            remedy = "give unit: s, or that of its numbers"
+            named = unit_by_name(self.table.names[place], self.table.names)
+            remedy = f"give unit: {named}, as its name says" if named else "give unit: s, or that of its numbers"
             raise InputError(Problem(f"{key}.unit", "is missing", None, remedy, self.source))
         own = _seconds_of(header)
         if timing.unit is None and own is not None:
@@ -283,10 +286,12 @@ class RawReader:
         return found
 
     def _channel(self, plan: ChannelPlan, base: TimeBase | None) -> RawChannel:
-        header = self.table.unit(self.table.index(plan.column, f"{plan.key}.column"))
+        place = self.table.index(plan.column, f"{plan.key}.column")
+        header = self.table.unit(place)
         unit = plan.unit or header
         if unit is None:
-            remedy = "give the unit of the column"
+            named = unit_at_end(self.table.names[place])
+            remedy = "give the unit of the column" + (f", as unit: {named}" if named else "")
             raise InputError(Problem(f"{plan.key}.unit", "is missing", None, remedy, self.source))
         if plan.unit is None and (own := scaled_unit(unit)):
             remedy = f"write unit: {own}, and gain: what the column holds for one {own}"

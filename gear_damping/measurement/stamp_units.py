@@ -57,7 +57,7 @@ def refuse_other_unit(
         return  # whatever the column was named before somebody made days of it
     finer = finer_than_said(first, one)
     rule = f"in {timing.unit} from 1970 on, stamps of {first:.6g} lie beyond the year 2286"
-    named = "s" if seconds_by_name(name) and one < 1 else unit_by_name(name)
+    named = "s" if seconds_by_name(name) and one < 1 else unit_by_name(name, table.names)
     if finer is None and named is not None and abs(to_si(1.0, named, "s") / one - 1) > _AS_LONG:
         finer, rule = named, f"the column is named '{name}'"
     if finer is not None:

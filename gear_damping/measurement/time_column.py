@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.measurement.column_kinds import ANGLE, MOTION, counts_rows
+from gear_damping.measurement.named_units import time_at_end
 from gear_damping.units import is_of_kind, to_si
 
 NAMED = re.compile(
@@ -16,7 +17,6 @@ NAMED = re.compile(
     re.I,
 )
 _SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|ns|min|h)$", re.I)
-_IS_UNIT = re.compile(r"^(sec|ms|msec|us|usec|µs|ns)$", re.I)  # a name that is nothing else; `s` is a way too
 _TICKS_NAMED = re.compile(r"^((sys|hal)_?)?tick(s?)$", re.I)  # of a clock where they are even, else of an encoder
 _ROUNDED_BY = 2  # numbers that steps of a `tick` differ by where its stamps are rounded
 ENDINGS = ("s", "ms", "us", "ns")
@@ -211,23 +211,15 @@ def seconds_by_name(name: str) -> bool:
     return bool(_SECONDS.search(name)) and not _PARTS.search(name)
 
 
-def unit_by_name(name: str) -> str | None:
-    """The unit that the name of a column of stamps says, at its end as `t_ms`, or as `millis`; None of any other."""
-    unit = _ending(name)
-    if unit in ENDINGS:
-        return unit
-    return next((part for word, part in _CLOCKS if word in name.lower()), None)
+def unit_by_name(reference: str | int, others: Sequence[str] = ()) -> str | None:
+    """The unit that the name of a column of stamps says, at its end as `t_ms`, or as `millis`; None of any other.
 
-
-def _ending(reference: str | int) -> str | None:
-    """The unit of time that a name ends with."""
-    return _unit_written(_SUFFIX.search(_bare(reference)))
-
-
-def _unit_written(found: re.Match[str] | None) -> str | None:
-    """The unit of time that was found in a name, as units are written."""
-    written = {"sec": "s", "msec": "ms", "usec": "us", "µs": "us"}
-    return written.get(found[1].lower(), found[1].lower()) if found else None
+    Args:
+        reference: Its name.
+        others: Those of the other columns.
+    """
+    name = str(reference).lower()
+    return time_at_end(reference, others) or next((part for word, part in _CLOCKS if word in name), None)
 
 
 def stamped_rate(unit: str, values: NDArray[np.float64]) -> float | None:
@@ -250,7 +242,7 @@ def _by_unit(index: int, column: _Column) -> str:
 
 
 def _by_name(index: int, column: _Column) -> str:
-    named = NAMED.search(_bare(column.reference)) or _SUFFIX.search(_bare(column.reference))
+    named = NAMED.search(_bare(column.reference)) or time_at_end(column.reference)
     free = column.unit is None or is_time(column.unit)
     return "advances and is named like a time" if named and free and _advances(column) else ""
 
@@ -379,12 +371,8 @@ def _unit(column: _Column) -> tuple[str, str]:
     """The unit of the stamps, and why where the file does not say it."""
     if is_time(column.unit):
         return column.unit, ""
-    if unit := _ending(column.reference) or _unit_written(_IS_UNIT.search(_bare(column.reference))):
+    if unit := unit_by_name(column.reference):
         return unit, "from its name"
-    name = _bare(column.reference).lower()
-    for word, unit in (("milli", "ms"), ("micro", "us"), ("nano", "ns")):
-        if word in name:
-            return unit, "from its name"
     first, step = float(column.inside[0]), float(np.median(np.diff(column.inside)))
     if unit := _unit_from_1970(first, step):
         return unit, "counted from 1970"

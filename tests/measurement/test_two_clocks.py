@@ -135,11 +135,11 @@ def test_a_longer_column_is_not_cut_to_the_record_in_silence(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("clock", "times"), [({"sampling_rate": "0.2 Hz"}, 1000), ({"time": {"column": "ms", "unit": "s"}}, 1000)]
+    ("clock", "times"), [({"sampling_rate": "0.2 Hz"}, 1000), ({"time": {"column": "tf", "unit": "s"}}, 1000)]
 )
 def test_rows_that_last_a_thousand_times_as_long_as_those_beside_them_are_said(tmp_path, clock, times):
     table = np.column_stack([TIME, wave(TIME), 1000 * TIME, wave(TIME)])
-    np.savetxt(tmp_path / "a.csv", table, header="tx,x,ms,F", comments="", delimiter=",", fmt="%.6f")
+    np.savetxt(tmp_path / "a.csv", table, header="tx,x,tf,F", comments="", delimiter=",", fmt="%.6f")
     record = {"name": "a", "file": "a.csv", "channels": {"displacement": {"column": "x", "unit": "mm"}}}
     record["channels"] |= {"time": {"column": "tx", "unit": "s"}, "force": FORCE | clock}
     (tmp_path / "m.yaml").write_text(yaml.safe_dump({"system": "oscillator", "records": [record]}))

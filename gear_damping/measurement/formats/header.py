@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from gear_damping.errors import InputError
-from gear_damping.measurement.column_kinds import compound_at_end
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written
+from gear_damping.measurement.named_units import compound_at_end
 from gear_damping.measurement.time_column import NAMED, is_time
 from gear_damping.units import multiple_of_a_unit, parse_unit, scaled_unit
 
