@@ -1,6 +1,6 @@
 """What an effect says of itself as a possible cause of what a simulation misses."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -103,6 +103,8 @@ class Recipe:
         whole: Parameters, by own name, whose upper bound is the end of what there is, as of a share of a pitch: one
             that converges there has run into nothing either.
         fixed: Parameters that stay.
+        settled: Parameters, by own name, that a first fit only finds a motion with: others and the initial states make
+            the same one with any of them. They stay where `Cause.settles` puts them.
         neutral: Value of the strengths without the effect.
         non_nested: The effect has no neutral value (a stiffness that was rigid): it is tried as a whole, at the
             size of its strength, with everything that is scanned free from the start.
@@ -125,6 +127,7 @@ class Recipe:
     sharpest: tuple[str, ...] = ()
     whole: tuple[str, ...] = ()
     fixed: Mapping[str, float] = field(default_factory=dict)
+    settled: tuple[str, ...] = ()
     neutral: float = 0.0
     non_nested: bool = False
     in_si: bool = False
@@ -186,6 +189,9 @@ class Cause:
             one answer.
         acts_as: What it comes to at the motion that was recorded, as words for a sentence with a size in N or in what
             that is per unit of mass: of its values by own name, the mean stiffness and the amplitude of the motion.
+        modes: The poles of the two modes that it makes of one, in 1/s: of its values by own name, the stiffness and the
+            damping of the first one alone, both per unit of mass.
+        settles: Of the same, its values and the stiffness and damping that make the same free motion.
     """
 
     sentence: str
@@ -196,6 +202,8 @@ class Cause:
     turns_with: Literal["", "shaft", "tooth", "clock", "record"] = ""
     one_class: tuple[str, ...] = ()
     acts_as: Callable[[Mapping[str, float], float, float], tuple[str, float] | None] | None = None
+    modes: Callable[[Mapping[str, float], float, float], Sequence[complex]] | None = None
+    settles: Callable[[Mapping[str, float], float, float], tuple[dict[str, float], float, float]] | None = None
 
     def alike(self, own: Mapping[str, Any]) -> tuple[str, ...]:
         """What it looks like with these values by own name."""

@@ -1,6 +1,7 @@
 """Another mass on a spring, hidden in what a sensor on the first one shows, is found; no harmonic is taken for one."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from gear_damping.explanation.model.rig import strongest_frequencies
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.load import load_measurement
 from gear_damping.physics.cause import Rig
-from gear_damping.physics.effects.second_mode import SecondMode
+from gear_damping.physics.effects.second_mode import COUPLED, SecondMode
 
 ROLES = ("fit", "fit", "holdout")
 RATE, SECONDS = 200.0, 12.0
@@ -116,7 +117,8 @@ def coupled_pendulums(folder, coupling=0.78, noise=0.002):
 def test_pendulums_that_pass_their_motion_to_and_fro_have_a_second_mode(tmp_path):
     content = explain(load_measurement(coupled_pendulums(tmp_path))).content
     assert (content["verdict"], [cause["name"] for cause in content["causes"]]) == ("explained", ["second_mode"])
-    found = content["causes"][0]["parameters"]
+    cause = content["causes"][0]
+    found = cause["parameters"] | {name: {"value": value} for name, value in cause["fixed"].items()}
     mass, tuned = 0.78**2 / (19.8 + 0.78) ** 2, math.sqrt(19.8 + 0.78) / (2 * math.pi)  # of the first on its spring
     assert found["mass_ratio"]["value"] == pytest.approx(mass, rel=0.15)
     assert found["frequency"]["value"] == pytest.approx(tuned, rel=0.01)
@@ -136,3 +138,64 @@ def test_the_own_frequency_stands_for_two_only_where_the_motion_swells(swells, c
     tried = SecondMode.cause.recipes_for(rig)
     assert len(tried) == count
     assert ({recipe.scanned["frequency"] for recipe in tried} == {7.0, 9.0, 5.0}) == swells
+
+
+def poles_of(own, stiffness, damping):
+    """One of each conjugate pair of eigenvalues of both masses, the slower one first."""
+    rate = 2 * math.pi * own["frequency"]
+    spring, damper = rate**2, 2 * own["damping_ratio"] * rate
+    pull = own["mass_ratio"] * np.array([spring, damper])
+    matrix = np.zeros((4, 4))
+    matrix[0, 1] = matrix[2, 3] = 1.0
+    matrix[1] = [-stiffness - pull[0], -damping - pull[1], pull[0], pull[1]]
+    matrix[3] = [spring, damper, -spring, -damper]
+    found = np.linalg.eigvals(matrix)
+    return sorted(found[found.imag > 0], key=abs)
+
+
+@pytest.mark.parametrize(
+    ("own", "stiffness", "damping"),
+    [
+        ({"mass_ratio": 0.0058, "frequency": 0.6326, "damping_ratio": 3e-4}, 17.525, 0.0067),
+        ({"mass_ratio": 0.2, "frequency": 3.0, "damping_ratio": 0.05}, 100.0, 0.6),
+        ({"mass_ratio": 0.02, "frequency": 1.5, "damping_ratio": 0.01}, 100.0, 0.2),
+    ],
+)
+def test_masses_with_the_same_modes_exchange_their_energy(own, stiffness, damping):
+    cause = SecondMode.cause
+    modes = poles_of(own, stiffness, damping)
+    assert np.allclose(cause.modes(own, stiffness, damping), modes, rtol=1e-9)
+    other, spring, damper = cause.settles(own, stiffness, damping)
+    assert np.allclose(poles_of(other, spring, damper), modes, rtol=1e-9)
+    largest = (abs(modes[0]) ** 2 + abs(modes[1]) ** 2) ** 2 / (4 * abs(modes[0] * modes[1]) ** 2) - 1  # undamped
+    assert other["mass_ratio"] == pytest.approx(COUPLED * largest, rel=0.1)
+    first_is_slower = [
+        k < (1 + o["mass_ratio"]) * (2 * math.pi * o["frequency"]) ** 2 for o, k in ((own, stiffness), (other, spring))
+    ]
+    assert first_is_slower[0] == first_is_slower[1]
+
+
+def test_modes_that_no_such_masses_share_their_damping_by_stay_as_they_were_found():
+    own = {"mass_ratio": 0.05, "frequency": 0.5, "damping_ratio": 0.1}
+    assert SecondMode.cause.settles(own, 100.0, 0.3) == (own, 100.0, 0.3)
+
+
+@pytest.mark.slow
+def test_both_modes_of_one_free_swing_are_told_though_no_mass_is(tmp_path):
+    """The beats of two equal pendulums, one record: how heavy the second is, its start says as well."""
+    rng, time = np.random.default_rng(3), np.arange(1600) / 20.0
+    modes = ((0.6203, 0.0005), (0.6794, 0.0009))  # Hz and damping ratio
+    x = sum(np.exp(-2 * math.pi * f * z * time) * np.cos(2 * math.pi * f * time) for f, z in modes)
+    np.savetxt(tmp_path / "a.csv", np.c_[time, x + 0.01 * rng.normal(size=len(time))], delimiter=",")
+    channels = {"time": {"column": 0, "unit": "s"}, "displacement": {"column": 1, "unit": "deg"}}
+    path = tmp_path / "measurement.yaml"
+    path.write_text(yaml.safe_dump({"system": "oscillator", "records": [{"file": "a.csv", "channels": channels}]}))
+    content = explain(load_measurement(path)).content
+    assert (content["verdict"], [cause["name"] for cause in content["causes"]]) == ("explained", ["second_mode"])
+    assert set(content["causes"][0]["fixed"]) == {"mass_ratio"}
+    (said,) = [one for one in content["sentences"] if one.startswith("The two modes lie at")]
+    numbers = [float(one) for one in re.findall(r"[0-9.]+[0-9]", said)]
+    for k, (frequency, ratio) in enumerate(modes):
+        assert numbers[6 * k + 1] < frequency < numbers[6 * k + 2]
+        assert numbers[6 * k + 4] < 100 * ratio < numbers[6 * k + 5]
+        assert numbers[6 * k + 5] - numbers[6 * k + 4] < 100 * ratio

@@ -33,6 +33,7 @@ class Candidate:
         initial_values: Coordinates at which other parameters begin in the full fit, by their place.
         moved: How far other parameters are moved for further starts, in coordinates by place.
         later: Free parameters that join in the full fit only.
+        settled: Names of free parameters that stay where a first fit has put them.
         non_nested: Whether it is tried as a whole.
         replaced: Free parameters that it took the place of.
         resting: Names of parameters that may rest at a bound without having run into it, with -1 for the lower one, 1
@@ -60,6 +61,7 @@ class Candidate:
     own_tooth: str = ""
     teeth: int = 0
     tried: Mapping[str, object] = field(default_factory=dict)
+    settled: tuple[str, ...] = ()
 
     @property
     def options(self) -> tuple[tuple[str, object], ...]:
@@ -180,6 +182,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
         own_tooth=own_tooth,
         teeth=teeth,
         tried=recipe.options,
+        settled=tuple(f"{kind.name}.{name}" for name in recipe.settled),
     )
 
 

@@ -11,6 +11,7 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.candidates import EXPONENT, Candidate
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, time_scale
+from gear_damping.explanation.model.two_modes import settled
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.statistics.paired import paired_gain
 from gear_damping.explanation.trials.levels_alone import levels_alone
@@ -31,6 +32,7 @@ CAUTIOUS = 0.3  # of the linearised optimum: the second start, where the first o
 FIRST_PART = 0.25  # of the records, by which the better start is chosen
 ONE = 1e-9  # share of the starts that goes on: the best
 CRAWL = 0.003  # of the cost: a fit that is far from the noise and gets nearer by less at a time is in a wrong valley
+AS_WELL = 5.0  # noise variances: no more may be left of a motion that is written otherwise, as of rounding
 ENOUGH = 0.1  # noise variances: a tenth of what a parameter of no use gains from noise
 TO_ENOUGH = Ends(ENOUGH)
 FIRST_ITERATIONS, LAST_ITERATIONS = 10, 30  # over a part of the record, and over all of it
@@ -164,7 +166,21 @@ def refitted(
         found = with_later(found, candidate, evidence, solver, ends)
     if not found.is_finite:
         return None
+    if candidate.settled:
+        found = _settled(found, candidate.settled, evidence, solver)
     return compared(score, found, against or outcome, evidence)
+
+
+def _settled(found: Outcome, names: Collection[str], evidence: Evidence, solver: Solver | None) -> Outcome:
+    """The same motion with these parameters known, and the others where they make it then."""
+    hypothesis = found.hypothesis
+    values = settled(found, hypothesis.effects[-1].name)
+    free = tuple(
+        replace(one, start=values.get(one.name, one.start)) for one in hypothesis.free if one.name not in names
+    )
+    told = replace(hypothesis, free=free, given=hypothesis.given | values)
+    again = fit_hypothesis(told, evidence, ends=TO_ENOUGH, solver=solver)
+    return again if again.fitted.cost <= found.fitted.cost + AS_WELL * evidence.noise**2 else found
 
 
 def with_later(

@@ -1,9 +1,11 @@
 """A second mode of the structure."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from math import hypot, inf, pi
 from typing import ClassVar
 
+import numpy as np
 import torch
 from torch import Tensor
 
@@ -20,6 +22,8 @@ HEAVY = 10.0  # of a mass behind one that no spring holds: a motor that carries 
 ABOUT = 2.0  # of its frequency, which the load of short records tells to so much
 LOW, HIGH = 1e-4, 1.0  # of the ratio that is fitted: beyond, the other mass is the first one
 NEAR = 1.15  # of the line that it is sought at: farther, it would take the place of the first mode
+COUPLED = 0.9  # of the largest ratio of masses with the same modes: nearly in tune, and their dampings still told apart
+TURNS = 20  # of what damping adds, each of which leaves some of its square of what the one before left
 DAMPED = (1e-5, 0.3)  # damping ratios of what shows as a line
 
 
@@ -31,11 +35,16 @@ def _at_the_lines(rig: Rig) -> tuple[Recipe, ...]:
     sought = [(frequency, ratio) for frequency in rig.frequencies for ratio in RATIOS]
     sought += [(rig.values["natural_frequency"] / (2 * pi), ratio) for ratio in BEATS if rig.swells]
     found = tuple(_begun(Mode(frequency, ratio, 0.01), HIGH, NEAR) for frequency, ratio in sought)
-    return found if rig.mode is None else (*found, _begun(rig.mode, HEAVY, ABOUT))
+    found = found if rig.mode is None else (*found, _begun(rig.mode, HEAVY, ABOUT))
+    return tuple(replace(one, settled=("mass_ratio",)) for one in found) if rig.swings_freely else found
 
 
 def _begun(mode: Mode, most: float, near: float) -> Recipe:
-    """One variant that fits begin from, with the largest ratio of the masses and the range of its frequency."""
+    """One variant that fits begin from, with the largest ratio of the masses and the range of its frequency.
+
+    Two modes of a free swing have two frequencies and two dampings, which is one number less than two masses have: what
+    the second mass does at first says the same as how heavy it is.
+    """
     return Recipe(
         {"mass_ratio": min(max(mode.mass_ratio, 2 * LOW), most / 2)},
         non_nested=True,
@@ -47,6 +56,45 @@ def _begun(mode: Mode, most: float, near: float) -> Recipe:
         },
         in_si=True,
     )
+
+
+def _poles(values: Mapping[str, float], stiffness: float, damping: float) -> list[complex]:
+    """One pole of each of the two modes, in 1/s, the slower one first; what is overdamped has none that swings.
+
+    Both masses at rest at first: (s^2 + c s + k + mu (w^2 + 2 zeta w s)) (s^2 + 2 zeta w s + w^2) =
+    mu (w^2 + 2 zeta w s)^2.
+    """
+    rate = 2 * pi * values["frequency"]
+    link = np.array([2 * values["damping_ratio"] * rate, rate**2])
+    first = np.polyadd([1.0, damping, stiffness], values["mass_ratio"] * link)
+    second = np.array([1.0, *link])
+    poles = np.roots(np.polysub(np.polymul(first, second), values["mass_ratio"] * np.polymul(link, link)))
+    return sorted(poles[poles.imag > 0], key=abs)
+
+
+def _as_coupled(values: Mapping[str, float], stiffness: float, damping: float) -> tuple[dict[str, float], float, float]:
+    """A second mass with the same two modes, of `COUPLED` of the largest mass that has them.
+
+    The largest one is that of two equal frequencies; there the damping of neither mass is told from the other's.
+    Coefficients of the polynomial of the poles give all but the mass, by turns for what damping adds to its middle.
+    """
+    poles = _poles(values, stiffness, damping)
+    if len(poles) < 2:
+        return dict(values), stiffness, damping
+    _, cubic, square, linear, product = np.poly([*poles, *np.conj(poles)]).real
+    ratio = COUPLED * (square**2 / (4 * product) - 1)
+    is_slower = stiffness < (1 + values["mass_ratio"]) * (2 * pi * values["frequency"]) ** 2
+    link = first = 0.0
+    for _ in range(TURNS):
+        middle = square - link * first
+        spread = np.sqrt(max(middle**2 - 4 * (1 + ratio) * product, 0.0))
+        rate = np.sqrt((middle + (spread if is_slower else -spread)) / (2 * (1 + ratio)))
+        held = product / rate**2
+        first, link = np.linalg.solve([[1.0, 1 + ratio], [rate**2, held]], [cubic, linear])
+    if min(first, link) < 0:  # so the modes share their damping with other masses only
+        return dict(values), stiffness, damping
+    own = {"mass_ratio": ratio, "frequency": rate / (2 * pi), "damping_ratio": max(link / (2 * rate), DAMPED[0])}
+    return {key: float(value) for key, value in own.items()}, float(held), float(first)
 
 
 class SecondMode(ExtraStates, Load):
@@ -65,7 +113,9 @@ class SecondMode(ExtraStates, Load):
     )
     needs: ClassVar = (Trait.REST,)
     states: ClassVar = {"displacement": "m", "velocity": "m/s"}
-    cause: ClassVar = Cause("a second mode of the structure", _at_the_lines, separated_by="amplitude")
+    cause: ClassVar = Cause(
+        "a second mode of the structure", _at_the_lines, separated_by="amplitude", modes=_poles, settles=_as_coupled
+    )
 
     def decay_time(self, values: Mapping[str, float]) -> float:
         """1 / (zeta w), of the second mass alone."""
