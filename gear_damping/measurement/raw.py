@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.angular_error import LENGTH, along_the_line, is_angle
+from gear_damping.measurement.by_turns import refuse_by_turns
 from gear_damping.measurement.checks import refuse_not_finite
 from gear_damping.measurement.cutting import rows_beside, slower, window_rows
 from gear_damping.measurement.declaration import ChannelPlan, EncoderPlan, RecordPlan, TimePlan
@@ -78,6 +79,7 @@ class RawReader:
         with self.problems.collecting():
             self._find_rows()
             self.rows = self.columns.without(self.rows)
+            self._refuse_by_turns()
             base = self._base()
             base, within = self._with_rows_beside(base)
             base = base and replace(base, findings=(*base.findings, *self.rows.said()))
@@ -214,6 +216,19 @@ class RawReader:
             return replace(base, findings=(*self.clocks.other_rate(rate, rows.first, rows.stop), *found))
         is_other = rate is not None and abs(rate / clock[1] - 1) > _SAME_RATE
         return replace(base, findings=(conflict_with_file(rate, clock[1]), *found) if is_other else found)
+
+    def _refuse_by_turns(self) -> None:
+        """Refuse rows of several sensors by turns; rows that are told apart already are of one."""
+        rows, time = self.rows, self.plan.timing.column
+        columns = [one.column for one in self.plan.channels if one.timing is None]
+        if not columns or rows.filled or rows.foreign or rows.doubled:
+            return
+        read = [self.columns.all(one) for one in columns if (self.columns.size(one) or 0) >= rows.stop]
+        stamps = None if time is None else rows.of(self.columns.all(time, f"{self.plan.key}.channels.time"))
+        columns += [] if time is None else [time]
+        used = {self.table.index(one, "") for one in columns if self.columns.size(one) is not None}
+        place = slice(rows.first, rows.stop)
+        refuse_by_turns(self.table, stamps, [rows.of(one) for one in read], used, place, self.source)
 
     def _with_rows_beside(self, base: TimeBase | None) -> tuple[TimeBase | None, tuple[float, float] | None]:
         """The time base with the sound rows beside the record that the filter of `resample` reaches, and its own ends.

@@ -143,12 +143,14 @@ class Columns:
             return ()
         stamps = rows.of(self.all(self.time, self.time_key))
         late = np.flatnonzero(np.diff(stamps) <= 0) + 1 + rows.first
-        if not 0 < late.size <= MOST_DOUBLED * stamps.size or written_significantly(stamps) is not None:
-            return ()
-        columns = self._covering(rows)
+        columns = self._covering(rows) if late.size else []
         if not columns:
             return ()
         values = np.stack([self.all(one)[: rows.stop] for one in columns], 1)
+        if _is_each_row_stored_again(stamps, values[rows.first :]):
+            return tuple(late.tolist())
+        if late.size > MOST_DOUBLED * stamps.size or written_significantly(stamps) is not None:
+            return ()
 
         def is_again(k: int) -> bool:
             """Whether a row holds the values of one before it."""
@@ -214,6 +216,17 @@ def filled_in(values: Array) -> tuple[int, int, int] | None:
     steps = np.diff(rows)
     is_regular = steps[0] > 1 and bool(np.all(steps == steps[0]))
     return (int(rows[0]), int(rows[-1]) + 1, int(steps[0])) if is_regular else None
+
+
+def _is_each_row_stored_again(stamps: Array, values: NDArray[np.float64]) -> bool:
+    """Whether every one of (n,) rows is stored equally often, one behind the other, with all of its (n, k) values."""
+    new = np.flatnonzero(np.diff(stamps)) + 1
+    times = np.diff(new)
+    if times.size < LEAST_SAMPLES or times[0] < 2 or np.any(times != times[0]) or np.any(np.diff(stamps) < 0):
+        return False
+    is_last_whole = max(new[0], stamps.size - new[-1]) <= times[0]
+    again = np.diff(stamps) == 0
+    return bool(is_last_whole and np.all((np.diff(values, axis=0) == 0)[again]))
 
 
 def _leading(true: NDArray[np.bool_]) -> int:

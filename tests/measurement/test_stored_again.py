@@ -124,3 +124,20 @@ def test_any_sign_may_end_a_row(tmp_path, sign):
 def test_one_column_of_decimal_commas_ends_in_its_sign_too(tmp_path):
     table = read(tmp_path, "x\n" + "".join(f"{k},{k % 10};\n" for k in range(40)))
     np.testing.assert_allclose(table.values(0), [float(f"{k}.{k % 10}") for k in range(40)])
+
+
+@pytest.mark.parametrize("times", [2, 3])
+def test_rows_that_are_all_stored_again_are_left_out_and_said(bench, times):
+    clean = phone()
+    (record,) = declared(bench, np.repeat(clean, times, 0)).load_as_it_is().records
+    (found,) = [finding for finding in record.findings if finding.kind == "doubled_rows"]
+    assert (found.severity, found.message.partition(" ")[0]) == ("note", str((times - 1) * len(clean)))
+    np.testing.assert_allclose(record.channels["displacement"].values, clean[:, 1], atol=1e-9)
+    assert record.sampling_rate == pytest.approx(100, rel=1e-6)
+
+
+def test_new_values_at_shared_stamps_are_not_left_out(bench):
+    table = phone(800)
+    table[:, 0] = np.arange(800) // 2 * 0.01
+    (record,) = declared(bench, table).load_as_it_is().records
+    assert record.time.size == 800

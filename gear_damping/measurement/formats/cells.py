@@ -157,6 +157,10 @@ class CellTable(Table):
         self._bad: dict[int, tuple[list[str], list[int]]] = {}
         self._begins = {k: one.begins for k, one in enumerate(columns) if one.begins is not None}
 
+    def cells(self, index: int) -> NDArray:
+        """(n,) the cells of a column as they stand."""
+        return self._columns[index].values
+
     def also(self, index: int) -> tuple[str, ...]:
         """What further rows of the header say above a column."""
         return self._columns[index].also

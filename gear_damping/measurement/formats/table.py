@@ -57,6 +57,10 @@ class Table(ABC):
     def values(self, index: int) -> NDArray[np.float64]:
         """(n,) float64: the column at a 0-based index; raises InputError where it cannot be read."""
 
+    def cells(self, index: int) -> NDArray:
+        """(n,) the cells of a column as they stand: numbers, or texts where not every cell is one."""
+        return self.values(index)
+
     def unit(self, index: int) -> str | None:
         """The unit that the file itself gives for a column, or None."""
         return None
