@@ -8,10 +8,10 @@ from pydantic import model_validator
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.angular_error import is_angle, is_angular_acceleration
-from gear_damping.measurement.quantities import PERIODS, Column, Corner, Cutoff, Gain, Measured, Rate
+from gear_damping.measurement.quantities import PERIODS, Column, Corner, Cutoff, Gain, Measured, Rate, Share
 from gear_damping.measurement.record import Quantity
 from gear_damping.schema.mappings import Declared, key
-from gear_damping.schema.values import Flag, Number, OneOf, Text, refuse
+from gear_damping.schema.values import Flag, OneOf, Text, refuse
 
 Reasons = Frozen[str, tuple[str, str]]
 
@@ -91,7 +91,7 @@ class Ranged(AnyChannel):
 class Scaled(AnyChannel):
     """A channel whose gain may be uncertain."""
 
-    uncertainty: Annotated[float, Number(least=0.0, unit="1")] = key(
+    uncertainty: Annotated[float, Share()] = key(
         "Relative standard uncertainty of the gain; 0 means known.", "prior on the gain", 0.0
     )
 

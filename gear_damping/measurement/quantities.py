@@ -5,6 +5,7 @@ A check raises InputError with keys relative to the value ("" for the value itse
 
 import re
 from dataclasses import dataclass
+from math import inf
 from types import MappingProxyType as Frozen
 from typing import Any
 
@@ -60,6 +61,21 @@ class Gain(Number):
         if whole:
             remedy += f", {to_si(number, of_column, whole):g} where it is in {whole}"
         return refuse("must be a number: what the column holds for one unit", value, remedy)
+
+
+@dataclass(frozen=True)
+class Share(Number):
+    """A relative uncertainty; a bare number above 1 is more likely one in per cent."""
+
+    least: float = 0.0
+    unit: str = "1"
+
+    def read(self, value: Any, name: str) -> float:
+        """The number, as a part of one."""
+        if isinstance(value, int | float) and not isinstance(value, bool) and 1 < value < inf:
+            remedy = f"write {name}: {value:g} % (or {value / 100:g}), or {100 * value:g} % where it is"
+            refuse(f"is relative, and means {100 * value:g} %", value, remedy)
+        return super().read(value, name)
 
 
 class Column(Value):
@@ -176,8 +192,7 @@ class Measured(Value):
         problems = self._unknown(value)
         number = self._part(value, "value", Number(), None, problems)
         unit = self._unit(value, problems)
-        share = Number(least=0.0, unit="1")
-        uncertainty = self._part(value, "uncertainty", share, 0.0, problems) if self.uncertain else 0.0
+        uncertainty = self._part(value, "uncertainty", Share(), 0.0, problems) if self.uncertain else 0.0
         more = self.more(value, problems)
         if problems:
             raise InputError(problems)
@@ -264,7 +279,7 @@ class Measured(Value):
             refuse("must not be 0", number, self.excluded)
         if found.uncertainty and number == 0:
             rule = "an uncertainty is relative, and there is nothing to relate it to where the value is 0"
-            remedy = "state a small value, as 0.1 with an uncertainty of 50 for 0.1 +- 5"
+            remedy = "state a small value, as 0.1 with an uncertainty of 5000 % for 0.1 +- 5"
             refuse(rule, found.uncertainty, remedy, "uncertainty")
         if self.unit in (None, "own"):
             if found.unit != "own" or self.unit is None:

@@ -16,6 +16,7 @@ from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.vocabulary import CHANNEL_MODELS, CHANNELS, SYSTEMS
 from gear_damping.schema.mappings import names
 from gear_damping.schema.values import Problems
+from gear_damping.units import DIGITS
 
 if TYPE_CHECKING:
     from gear_damping.physics.systems.base import System
@@ -139,7 +140,7 @@ def _channel(channel: Channel, keys: Sequence[str]) -> dict[str, object]:
     ):  # fmt: skip
         value = getattr(channel, name)
         if value != default:
-            declared[name] = value
+            declared[name] = _share(value) if name == "uncertainty" else value
     if "datum" in keys and channel.mounting != "casing" and ("mounting" not in keys or channel.mounting):
         declared["datum"] = channel.datum
     if "hold" in keys and channel.hold != is_staircase(channel.values):
@@ -152,5 +153,10 @@ def _quantity(quantity: Quantity) -> dict[str, object]:
     if quantity.unit != "own":
         written["unit"] = quantity.unit
     if quantity.uncertainty:
-        written["uncertainty"] = float(quantity.uncertainty)
+        written["uncertainty"] = _share(float(quantity.uncertainty))
     return written
+
+
+def _share(uncertainty: float) -> float | str:
+    """A relative uncertainty as it is declared: one above 1 in per cent."""
+    return uncertainty if uncertainty <= 1 else f"{100 * uncertainty:.{DIGITS}g} %"

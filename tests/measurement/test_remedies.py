@@ -331,3 +331,18 @@ def test_small_files_beyond_a_smaller_limit_are_told_to_the_byte(bench):
 )
 def test_units_in_the_letters_of_other_countries_are_read(written, unit):
     assert parse_unit(written) == parse_unit(unit)
+
+
+@pytest.mark.parametrize("place", ["parameter", "channel"])
+def test_a_bare_uncertainty_above_one_is_asked_whether_it_is_in_per_cent(bench, place):
+    at = bench.record["channels"]["transmission_error"]
+    if place == "parameter":
+        at = bench.content["parameters"]["torque_gain"] = {"value": 1.0}
+    at["uncertainty"] = 2
+    said = "uncertainty: is relative, and means 200 %; remedy: write uncertainty: 2 % (or 0.02), or 200 % where it is"
+    assert said in bench.only_problem().replace(" = 2", "")
+    for text, value in (("2 %", 0.02), ("200 %", 2.0), (0.02, 0.02), (1, 1.0), ({"value": 2, "unit": "%"}, 0.02)):
+        at["uncertainty"] = text
+        loaded = bench.load()
+        held = loaded.records[0].channels["transmission_error"] if place == "channel" else None
+        assert (held or loaded.parameters["torque_gain"]).uncertainty == pytest.approx(value)

@@ -68,6 +68,15 @@ def test_an_oscillator_in_volts_comes_back_the_same(tmp_path):
     _same(measurement.records[0], record)
 
 
+def test_a_large_uncertainty_comes_back_the_same(tmp_path):
+    parameters = {"torque_gain": Quantity(1.0, "1", 2.5)}
+    channel = replace(_record().channels["transmission_error"], uncertainty=1.5)
+    record = replace(_record(), channels=_record().channels | {"transmission_error": channel})
+    measurement = load_measurement(write_measurement(tmp_path, "gear_pair", [record], parameters))
+    assert dict(measurement.parameters) == parameters
+    assert measurement.records[0].channels["transmission_error"].uncertainty == 1.5
+
+
 def test_nothing_is_overwritten_and_nothing_half_written(tmp_path):
     (tmp_path / "run_2.csv").write_text("precious")
     with pytest.raises(InputError, match=r"run_2\.csv.*exists already|exists already.*run_2\.csv") as caught:
