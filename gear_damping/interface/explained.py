@@ -22,6 +22,7 @@ from gear_damping.interface.arguments import (
 )
 from gear_damping.interface.model import Model
 from gear_damping.interface.new_file import written_anew
+from gear_damping.interface.rig_unit import in_the_unit_of
 from gear_damping.measurement.record import Measurement
 from gear_damping.own_files import plugin_paths
 from gear_damping.physics.catalogue import catalogue
@@ -62,11 +63,11 @@ class Answer:
 
     @property
     def model(self) -> Model | None:
-        """The simulation with its causes and fitted values; None where nothing was fitted."""
+        """The simulation with its causes and values, in the unit of the records; None where nothing was fitted."""
         if self.found.found is None:
             return None
         outcome = self.found.found.outcome
-        return Model.holding(outcome.hypothesis.model, outcome.flat_given())
+        return in_the_unit_of(self.found.evidence, outcome.hypothesis.model, outcome.flat_given())
 
     @property
     def damping_ratio(self) -> dict[str, Any] | None:

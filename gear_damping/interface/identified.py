@@ -12,6 +12,7 @@ from gear_damping.explanation.explain import NOBODY, Listener
 from gear_damping.interface import identified_gears, identified_oscillator
 from gear_damping.interface.arguments import names, refuse_other, refuse_other_call, refuse_other_solver
 from gear_damping.interface.model import Model
+from gear_damping.interface.rig_unit import in_the_unit_of
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.simulation.solver_settings import Progress, Solver
@@ -54,11 +55,14 @@ class Identification:
 
     @property
     def model(self) -> Model | None:
-        """The model with the fitted values; None of the linear oscillator, whose parameters say it all."""
+        """The model with the fitted values, in the unit of the records; None of the linear oscillator.
+
+        The parameters of that one say it all.
+        """
         if isinstance(self.fitted, identified_oscillator.Fitted):
             return None
         outcome = self.fitted.outcome
-        return Model.holding(outcome.hypothesis.model, outcome.flat_given())
+        return in_the_unit_of(self.fitted.evidence, outcome.hypothesis.model, outcome.flat_given())
 
     def table(self) -> str:
         """The parameters with their intervals, and what is missing, as text."""
@@ -88,18 +92,19 @@ def identify(
 
     Args:
         measurement: As `load` gives it.
-        model: What is fitted; the linear oscillator, or the nominal gear pair, where absent.
+        model: What is fitted; the linear oscillator, or the nominal gear pair, where absent. Values in another unit
+            than that of the records, as SI, are converted.
         free: Its free parameters, by flat name (`backlash.gap`); `damping_ratio` stands for the coefficient of its one
             damping law. Where absent, every number that its effects were given, and an oscillator's stiffness,
-            viscous damping and gains, given or not. What the file states with an uncertainty is free too, about what
-            it states; initial states and unknown zeros of channels always are.
+            viscous damping, gains and strengths of effects, given or not. What the file states with an uncertainty is
+            free too, about what it states; initial states and unknown zeros of channels always are.
         log: Told what is found on the way.
         progress: Told (done, total) of the fit of an oscillator or a gear pair, but not of a `model` of one's own.
         solver: Settings of the solver.
 
     Raises:
-        InputError: the data are damaged, nothing can be fitted, a name is unknown, or an oscillator's stiffness,
-            viscous damping or gain is neither free nor known.
+        InputError: the data are damaged, nothing can be fitted, a name is unknown, what scales the motion of an
+            oscillator is neither free nor known, or the units of model and records are of different kinds.
     """
     refuse_faults(measurement)
     refuse_other_solver(solver)

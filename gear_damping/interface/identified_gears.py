@@ -12,37 +12,30 @@ from gear_damping.explanation.answer.gain import damping_ratio, final_parameters
 from gear_damping.explanation.answer.other_shafts_torque import torque_of_the_other_shaft
 from gear_damping.explanation.answer.unexplained import first_channel
 from gear_damping.explanation.casing.heard import is_casing
-from gear_damping.explanation.evidence.declared_units import radian_of
 from gear_damping.explanation.evidence.excess import WHOLE, Excess, excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence, evidence_of, with_own_angles
 from gear_damping.explanation.evidence.useful_samples import at_useful_rate
 from gear_damping.explanation.explain import Listener, explain, fitting_solver, with_noise
-from gear_damping.explanation.model.candidates import first_sizes
 from gear_damping.explanation.model.contradicted import contradicts_stated, noise_above
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
-from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, natural_frequency_hz
-from gear_damping.explanation.model.nominal_gear_pair import FLAT, MESH, angles_of, first_gear_pair
+from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
+from gear_damping.explanation.model.nominal_gear_pair import MESH, angles_of
 from gear_damping.explanation.model.ringing import told_covariance
 from gear_damping.explanation.steps.too_short import too_short
 from gear_damping.explanation.trials.bench import Log
 from gear_damping.explanation.trials.efficient import weighed
-from gear_damping.identification.oscillator.linear_model import DAMPING, linear_model
 from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.interface.far_from_stated import far_from_stated
-from gear_damping.interface.free_parameters import free_parameters, given_numbers
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
+from gear_damping.interface.own_start import own_start
 from gear_damping.measurement.record import Measurement
-from gear_damping.physics.damping_ratio import DAMPING_RATIO
 from gear_damping.physics.model import Model
-from gear_damping.physics.systems.traits import Trait, by_trait
 from gear_damping.reporting import figures, tables
 from gear_damping.simulation.solver_settings import Solver
 
 SHOWN = ("mesh_stiffness_shape",)  # what is fitted in many numbers stands in the JSON alone
-MOTION = ("amplitude", "characteristic_time")  # of an oscillator: what damping ratios belong to, as the records move
-STARTS = (1.0, 0.2, 5.0)  # times what a strength is tried at: beside a viscous damping a law may die out on the way
 ITERATIONS = 40  # at most, of a fit of one's own model
 STEEL = 1.4e10  # N/m^2: mesh stiffness of steel teeth by their width (ISO 6336-1: 14 N/(mm um) of one pair)
 WIDTH = 10.0  # modules, of usual teeth
@@ -52,11 +45,12 @@ SOFTEST, STIFFEST = 1e-3, 30.0  # times that: polymers are 100 times softer and 
 
 @dataclass(frozen=True)
 class Fitted:
-    """A fitted model with the records it was fitted to, and their noise."""
+    """A fitted model with the records it was fitted to, their noise, and what is said of values that did not hold."""
 
     evidence: Evidence
     noise: NoiseLevel
     outcome: Outcome
+    overruled: tuple[str, ...] = ()
 
 
 def nominal_fit(measurement: Measurement, listener: Listener, solver: Solver | None) -> Fitted:
@@ -77,11 +71,11 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
     """A model of one's own with these parameters free; what it was not given is what the file states of the rig.
 
     What neither gives keeps the default that the model prints; where it is free, it begins at what `explain` would
-    begin with. Where no parameter is named, those that it was given are free, and of an oscillator its linear ones.
+    begin with. Where no parameter is named, those that it was given are free, and of an oscillator its linear ones
+    and the strengths of its effects.
 
     Raises:
-        InputError: the model is of another system, a name is unknown, a free parameter begins at zero, nothing is
-            free, or an oscillator's stiffness, damping or gain is neither free nor known.
+        InputError: the model is of another system, or `own_start` refuses it.
     """
     _refuse_casing(measurement)
     evidence = at_useful_rate(evidence_of(measurement))
@@ -89,25 +83,8 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
         rule = f"is a {model.system.name}, the records are those of a {evidence.system}"
         raise InputError(Problem("model", rule, remedy="give a model of the measured system"))
     evidence, noise = with_noise(replace(evidence, segments=evidence.stated_segments), measurement, log)
-    first = {k: v for k, v in _first(evidence).items() if k in model.parameters()}
-    named = {FLAT.get(name, name): value for name, value in evidence.parameters.items()}  # a ratio is no coefficient
-    stated = {name: first[name] if name == DAMPING else value for name, value in named.items() if name in first}
-    linear = [name for name in _linear(evidence) if name in first and name not in model.given]
-    free = free or (*given_numbers(model), *linear)
-    if not free:
-        rule = "names nothing to be fitted, and the model was given no values"
-        raise InputError(Problem("free", rule, remedy="for example ['damping_ratio']"))
-    names = {model.damping_coefficient if name == DAMPING_RATIO else name for name in free}
-    motion = {name: first[name] for name in MOTION if name in first}
-    strengths, others = _sizes(model, evidence, first)
-    sizes = strengths | others | first
-    initial = {name: sizes[name] for name in names if name in sizes}
-    given = initial | motion | _radians(model, evidence) | stated | model.given
-    unknown = [name for name in names if name in strengths and name not in {*stated, *model.given}]
-    starts = [given | {name: factor * given[name] for name in unknown} for factor in (STARTS if unknown else (1.0,))]
-    moved = [free_parameters(model, start, free, stated, evidence.known.uncertainty) for start in starts]
-    _refuse_unknown(model, [name for name in linear if name not in {*names, *stated}])
-    begun = [Hypothesis(model.system, model.effects, *both) for both in zip(starts, moved, strict=True)]
+    start = own_start(model, evidence, free)
+    begun = start.hypotheses
     solver, own = fitting_solver(solver), {}
     if not evidence.has_index:
         evidence = with_own_angles(evidence)
@@ -119,45 +96,7 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
         rule = "runs away when it is simulated with what the fit came to"
         remedy = "begin with values nearer to those of the rig, or free fewer parameters"
         raise InputError(Problem("model", rule, remedy=remedy, source=str(measurement.source)))
-    return Fitted(evidence, noise, weighed(outcome, evidence))
-
-
-def _sizes(model: Model, evidence: Evidence, first: Given) -> tuple[Given, Given]:
-    """Strengths and other sizes of the effects of an oscillator that show in its motion: no default knows that."""
-    if not evidence.has(Trait.REST):
-        return {}, {}
-    own = {parameter.name for parameter in model.system.parameters}
-    given = {name: value for name, value in (first | model.given).items() if name in own}
-    return first_sizes(Hypothesis(model.system, (), given, ()), evidence, model.effects)
-
-
-def _linear(evidence: Evidence) -> list[str]:
-    """What a linear oscillator is fitted with: stiffness, damping and gains; nothing of a gear pair."""
-    if not evidence.has(Trait.REST):
-        return []
-    names = {evidence.base.spring, DAMPING, *evidence.base.gains.values()}
-    return [one.name for one in linear_model(evidence.fit, evidence.known)[0] if one.name in names]
-
-
-def _refuse_unknown(model: Model, names: Sequence[str]) -> None:
-    """Refuse to hold what scales the motion at a default, which is that of no rig."""
-    declared = model.parameters()
-    problems = [
-        Problem(
-            "free",
-            f"lacks '{name}', which is not known and would be held at {declared[name].default:g}",
-            remedy="free it, give it to the model, or state it under `parameters`",
-        )
-        for name in names
-    ]
-    if problems:
-        raise InputError(problems)
-
-
-def _radians(model: Model, evidence: Evidence) -> dict[str, float]:
-    """What follows of a model's parameters from the unit of an angle that was recorded."""
-    radian = radian_of(evidence)
-    return {f"{effect.name}.{effect.radian}": radian for effect in model.effects if effect.radian and radian}
+    return Fitted(evidence, noise, weighed(outcome, evidence), tuple(start.overruled))
 
 
 def _refuse_casing(measurement: Measurement) -> None:
@@ -165,23 +104,6 @@ def _refuse_casing(measurement: Measurement) -> None:
         rule = "an accelerometer on a casing tells no damping: its path from the mesh is unknown"
         remedy = "measure a transmission error or a shaft, or choose task=explain for what the casing shows"
         raise InputError(Problem("records", rule, remedy=remedy, source=str(measurement.source)))
-
-
-def _first(evidence: Evidence) -> Given:
-    """What the search begins with, by flat name of the simulator's parameters: stated, or a first guess."""
-    return by_trait(evidence.base, FIRST, "nominal model")(evidence)
-
-
-def _of_gears(evidence: Evidence) -> Given:
-    return first_gear_pair(evidence).given
-
-
-def _of_a_spring(evidence: Evidence) -> Given:
-    free, given, _ = linear_model(evidence.fit, evidence.known)
-    return given | {parameter.name: parameter.start for parameter in free}
-
-
-FIRST = {Trait.TEETH: _of_gears, Trait.REST: _of_a_spring}
 
 
 def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
@@ -210,6 +132,7 @@ def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
         },
         "contradicted": _far_off(outcome, evidence)
         or noise_above(found.noise, rmse(outcome.fit_residuals), evidence.channel),
+        "overruled": list(found.overruled),
         "too_short": too_short(evidence, outcome) or None,
         "segment_s": evidence.segments.seconds or None,
         "records": {
@@ -251,7 +174,8 @@ def table_of(content: dict[str, Any]) -> str:
             f"signal's variance beyond the noise, and the intervals do not cover what is missing; "
             f"task=explain measurement.path={lacking['source']} looks for its name\n"
         )
-    said = filter(None, (text.rstrip(), content["contradicted"], content["too_short"], _hardly_told(content)))
+    own = (content["contradicted"], content["too_short"], _hardly_told(content))
+    said = filter(None, (text.rstrip(), *content["overruled"], *own))
     return "\n\n".join(said) + "\n"
 
 

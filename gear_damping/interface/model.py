@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import yaml
@@ -21,7 +22,10 @@ HOW = {
     "extended": None, "plugins": [], "solver": {"accuracy": 1e-5, "substeps": None, "engine": "auto", "chunk": 4096},
 }  # fmt: skip
 FIXED = {"name": "fixed", "start": "static", "perturbation": 0.0}  # a family of which nothing varies
-HEADER = "# A simulator; every value is SI. Use it by simulator.extended=PATH, or gd.Model.from_config(PATH).\n"
+HEADER = (
+    "# A simulator; values are SI, or of a `unit` per unit of mass.\n"
+    "# Use it by simulator.extended=PATH, or gd.Model.from_config(PATH).\n"
+)
 
 
 class Model(physics.Model):
@@ -71,11 +75,24 @@ class Model(physics.Model):
         return cls.holding(settings.model, at_its_ratio(settings))
 
     @classmethod
-    def holding(cls, model: physics.Model, values: Mapping[str, float | tuple[float, ...]]) -> "Model":
-        """A model with values, by flat name in SI, in its own hands."""
+    def holding(
+        cls,
+        model: physics.Model,
+        values: Mapping[str, float | tuple[float, ...]],
+        options: Mapping[str, Any] = MappingProxyType({}),
+    ) -> "Model":
+        """A model with values, by flat name in SI or in the unit of its system, in its own hands.
+
+        Args:
+            model: What holds none, or other ones.
+            values: By flat name.
+            options: Of the system, in the place of the model's.
+        """
         known = model.parameters()
         given = {name: value for name, value in values.items() if name in known}
-        system = type(model.system)(**model.system.chosen, **{k: v for k, v in given.items() if "." not in k})
+        system = type(model.system)(
+            **{**model.system.chosen, **options}, **{k: v for k, v in given.items() if "." not in k}
+        )
         effects = [
             type(effect)(**effect.chosen, **{p.name: given[f"{effect.name}.{p.name}"] for p in effect.parameters
                                              if f"{effect.name}.{p.name}" in given})
@@ -84,7 +101,10 @@ class Model(physics.Model):
         return cls(system, effects)
 
     def to_config(self) -> dict[str, Any]:
-        """The `simulator` node that describes it: plain values in SI, every option, every value that was given."""
+        """The `simulator` node that describes it: every option and every value that was given, as plain values.
+
+        They are in SI, or in its `unit` per unit of mass.
+        """
         node: dict[str, Any] = {"system": self.system.name, **self.system.chosen, **_plain(self.system.given)}
         return node | {effect.name: {**effect.chosen, **_plain(effect.given)} for effect in self.effects}
 

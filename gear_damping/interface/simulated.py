@@ -155,8 +155,8 @@ def simulate(
         inputs: Measured series that drive it, (time,) or (batch, time), SI: `force`, `base_acceleration`;
             `pinion_torque`, `gear_torque`, `pinion_angle`. `gd.Driven` says which of them hold, and seeds drawn loads.
         solver: Settings of the solver, and who is told of its progress: `gd.Solver`.
-        parameters: In the place of the model's, by name in SI: numbers, or (batch,); of an effect `**{"backlash.gap":
-            8e-5}`.
+        parameters: In the place of the model's, by name in SI, or in the `unit` of an oscillator: numbers, or (batch,);
+            of an effect `**{"backlash.gap": 8e-5}`.
 
     Raises:
         InputError: a name is unknown, or a value out of range.

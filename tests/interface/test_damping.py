@@ -50,7 +50,7 @@ def record(measured):
 @pytest.fixture(scope="module")
 def fitted(record):
     model = gd.Model(
-        gd.Oscillator(stiffness=OMEGA**2),
+        gd.Oscillator(stiffness=OMEGA**2, unit="mm"),
         [gd.ViscousDamping(damping_coefficient=0.3), gd.PowerLawDamping(coefficient=2e-3, exponent=2.0)],
     )
     names = ["stiffness", "viscous_damping.damping_coefficient", "power_law_damping.coefficient"]
@@ -141,7 +141,7 @@ def test_the_law_of_a_fitted_simulation_is_that_of_its_work_in_a_cycle(record, f
 
 
 def test_a_simulation_that_comes_to_rest_has_a_law_as_far_as_it_swings(record):
-    model = gd.Model(gd.Oscillator(stiffness=OMEGA**2), [gd.CoulombFriction(force=100.0)])
+    model = gd.Model(gd.Oscillator(stiffness=OMEGA**2, unit="mm"), [gd.CoulombFriction(force=100.0)])
     found = gd.identify(record, model, free=["stiffness", "coulomb_friction.force"])
     assert damping_law(found.fitted.outcome, found.fitted.evidence, (20.0, 2.0)) is not None
 

@@ -42,7 +42,11 @@ def test_the_damping_of_a_hysteresis_is_that_of_the_motion_recorded(decay):
 def test_what_runs_away_is_said(decay):
     model = gd.Model(
         gd.Oscillator(stiffness=STIFFNESS),
-        [gd.ViscousDamping(damping_coefficient=5.0), gd.CubicStiffness(coefficient=-1e17), gd.PowerLawDamping()],
+        [
+            gd.ViscousDamping(damping_coefficient=5.0),
+            gd.CubicStiffness(coefficient=-1e17),
+            gd.PowerLawDamping(coefficient=131.797425),
+        ],
     )
     with pytest.raises(InputError, match="runs away when it is simulated"):
         gd.identify(decay, model, free=[*FREE, "cubic_stiffness.coefficient"])
