@@ -153,7 +153,7 @@ def numbers(name: str, value: Any, unit: str = "SI") -> torch.Tensor:
     try:
         array = np.asarray(given)
         real = None if array.dtype.kind == "c" else np.array(array, dtype=float)
-        if array.dtype.kind == "O" and any(one is None for one in array.flat):
+        if array.dtype.kind in "USO" and any(isinstance(one, str | bytes | None) for one in array.flat):
             raise TypeError
     except (TypeError, ValueError):
         raise InputError(Problem(name, "must hold numbers alone", shown, remedy)) from None

@@ -91,7 +91,7 @@ class Simulation:
     def cwt(
         self,
         wavelet: str | type[ContinuousWavelet] = "ricker",
-        frequencies_hz: Sequence[float] | None = None,
+        frequencies_hz: float | Sequence[float] | None = None,
         channel: str | None = None,
     ) -> tuple[Array, Array]:
         """Continuous wavelet transform of a channel.
@@ -99,7 +99,8 @@ class Simulation:
         Args:
             wavelet: `ricker` (real), `morlet` (complex), or a class of one's own that derives from
                 `signals.wavelets.ContinuousWavelet`.
-            frequencies_hz: 32 in equal ratios from four periods of the record to 0.4 of the rate where absent.
+            frequencies_hz: One or several; 32 in equal ratios from four periods of the record to 0.4 of the rate where
+                absent.
             channel: The response where absent.
 
         Returns:
@@ -118,12 +119,18 @@ class Simulation:
                 few = f"{len(self.runs.time)} samples hold no {LOWEST:g} periods of any frequency"
                 raise ValueError(f"{few}; simulate {int(LOWEST / HIGHEST) + 1} of them or more")
             frequencies_hz = (self.sampling_rate * np.geomspace(lowest, highest, SCALES)).tolist()
+        frequencies_hz = numbers("frequencies_hz", frequencies_hz, "Hz").flatten().tolist()
         transform = kind(self.sampling_rate, frequencies_hz=frequencies_hz)
         signal = self.runs.channel(channel or self.model.system.response)
         return transform(signal).numpy(), np.asarray(frequencies_hz)
 
     def plot(self, run: int = 0) -> Figure:
-        """One run over time, its spectrum (in orders where there is a shaft), and its phase plane."""
+        """One run, counted from 0, over time, its spectrum (in orders where there is a shaft), and its phase plane.
+
+        Raises:
+            InputError: there is no such run.
+        """
+        Problems(whole_number_problems("run", run, Number(0, len(self) - 1, whole=True))).raise_any()
         return run_figure(self.runs, self.runs.response, run)
 
     def __len__(self) -> int:

@@ -462,3 +462,26 @@ def test_an_oscillator_is_told_per_unit_of_mass_as_it_is_identified(unit):
     with pytest.raises(gd.InputError, match=r"must lie within 0 … 1e\+12 1/s;"):
         gd.simulate(model, **SAMPLED, **coefficient)
     assert "pinion_torque = 9 N*m" in str(gd.Model(gd.GearPair(pinion_torque=9), [gd.FourierMeshStiffness()]))
+
+
+@pytest.mark.parametrize("given", ["600", ["600"], [None]])
+def test_a_text_is_no_number_though_it_looks_like_one(given):
+    with pytest.raises(gd.InputError, match=r"stiffness.*: must hold numbers alone; remedy: give real numbers in SI"):
+        gd.simulate(MODEL, **SAMPLED, stiffness=given)
+
+
+def test_one_frequency_of_a_transform_is_one(runs):
+    """It was a TypeError."""
+    coefficients, frequencies = runs.cwt(frequencies_hz=4.0)
+    assert coefficients.shape == (1, 1, SAMPLED["n_samples"])
+    assert frequencies.tolist() == [4.0]
+    np.testing.assert_array_equal(coefficients, runs.cwt(frequencies_hz=[4.0])[0])
+    with pytest.raises(gd.InputError, match="frequencies_hz = '4 Hz': must hold numbers alone"):
+        runs.cwt(frequencies_hz="4 Hz")
+
+
+@pytest.mark.parametrize("run", [1, -1, 0.5, "0"])
+def test_a_run_that_is_not_there_is_named(run, runs):
+    """It was an IndexError of the tensor."""
+    with pytest.raises(gd.InputError, match=r"run = .*must "):
+        runs.plot(run=run)
