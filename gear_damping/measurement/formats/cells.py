@@ -21,7 +21,10 @@ MOST_EMPTY = 0.3  # of the rows: where every other or third one is empty, none o
 FEWEST_BEHIND = 8  # empty cells at the end of a column, as many as a record needs: fewer are cells that were lost
 SHOWN = 3  # faults of one kind that are listed one by one
 MOST_BELOW = 20  # rows that may lie below a table, and more of its own
-_WITH_UNIT = re.compile(r"\s*[+-]?\d[\d.,]*([eE][+-]?\d+)?\s+(?P<unit>[A-Za-zµμ°%][^\s\d]*)\s*")
+_NUMERAL = r"\s*[+-]?\.?\d[\d.,]*([eE][+-]?\d+)?"
+# A unit behind a blank, or at once where it is no letter that may say milli or mega.
+_WITH_UNIT = re.compile(rf"{_NUMERAL}(\s+(?P<apart>[A-Za-zµμ°%][^\s\d]*)|(?P<close>[A-Za-zµμ°][^\s\d]+|[VNs%°]))\s*")
+_WITH_LETTER = re.compile(rf"{_NUMERAL}(?P<behind>[^\d\s.,;+\-]\S*)\s*$")
 LISTED = 8  # columns that a message lists
 
 
@@ -128,15 +131,19 @@ def _first_word(cells: NDArray) -> int | None:
 
 def _unit_of_cells(cells: NDArray) -> str:
     """The unit that stands behind the number of each of a column's texts (MATLAB: `0.005 sec`); "" without one."""
-    if is_real(cells.dtype) or not cells.size or (first := _WITH_UNIT.fullmatch(str(cells[0]))) is None:
+    if is_real(cells.dtype) or not cells.size or not (unit := unit_in(str(cells[0]))):
         return ""
-    unit = first["unit"]
+    return unit if all(unit_in(str(cell)) == unit for cell in cells) else ""
+
+
+def unit_in(cell: str) -> str:
+    """The unit that stands behind a number in a cell, `0.005 sec`, `12mm` or `3 %`; "" in any other cell."""
+    found = _WITH_UNIT.fullmatch(cell)
+    unit = (found["apart"] or found["close"]) if found else ""
     try:
-        parse_unit(unit)
+        return unit if unit and parse_unit(unit) else ""
     except InputError:
         return ""
-    found = (_WITH_UNIT.fullmatch(str(cell)) for cell in cells)
-    return unit if all(one is not None and one["unit"] == unit for one in found) else ""
 
 
 def is_word(cell: str) -> bool:
@@ -290,6 +297,11 @@ class CellTable(Table):
         if len(cells) > 1 and len(bad) == len(cells) and not is_told(cells[0]):
             rule, held = f"not a number, and no other of its {len(cells)} cells is one", self._with_numbers()
             remedy = f"name another column: {held}" if held else "name another column"
+            if behind := _WITH_LETTER.match(cells[0]):
+                rule = (
+                    f"a number with '{behind['behind']}' behind it, and none of its {len(cells)} cells is a plain one"
+                )
+                remedy = "write plain numbers in the file, and what stands behind them as the unit of the channel"
             return [Problem(f"{self.path.name}, {title}", rule, cells[0], remedy, str(self.path))]
         if ends := self._ends_early(cells, bad):
             return [Problem(f"{self.path.name}, {title}", *ends, str(self.path))]

@@ -5,6 +5,7 @@ from dataclasses import replace
 from itertools import islice
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.formats.cells import unit_in
 from gear_damping.measurement.formats.header import Header, filled, find_header, is_units, known_header
 from gear_damping.measurement.formats.moments import is_told
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written
@@ -31,6 +32,7 @@ def text_header(text: Text) -> tuple[Header, int]:
         rows.append(row)
     if not rows:
         raise InputError(Problem("file", "no rows", str(text.path), "export it again"))
+    rows = _without_units(rows)
     start = _behind_marks(rows) or _behind_settings(rows)
     settings, lines, rows = rows[:start], lines[start:], rows[start:]
     # LabVIEW writes channels of one sample a block into the first row of each alone.
@@ -44,7 +46,8 @@ def text_header(text: Text) -> tuple[Header, int]:
         or (text.delimiter == " " and len(header.names) > text.width > 0)
     )
     if is_title:  # names in words would be as many as the columns
-        header = Header(("",) * text.width, (), header.first, header.first)
+        first, says = _behind_a_note(rows, header.first, text.width)
+        header = Header(("",) * text.width, (), first, first, says)
     if len(header.names) == text.width - 1 and _are_rows_numbered(rows[header.first :], text.width):
         header = replace(header, names=("", *header.names))
     if header.first == len(rows):
@@ -54,11 +57,33 @@ def text_header(text: Text) -> tuple[Header, int]:
                 f"a name stands before every value, as in '{labelled}'",
                 "leave the names out of the rows, and write them once into a line above",
             )
+        elif any("[" in cell for row in rows for cell in row):
+            remedy = "take out the brackets and what stands before them, so that each line is a row"
         raise InputError(Problem("file", rule, str(text.path), remedy))
     if not header.names:
         names, units = _of_comments(comments, text.delimiter, len(rows[header.first]))
         header = Header(names, units, header.first, header.skipped)
     return header, lines[header.first]
+
+
+def _without_units(rows: list[list[str]]) -> list[list[str]]:
+    """Rows as numbers alone, where in the last one each cell is a number and a unit, `12 mm`; else as they are."""
+    if not all(unit_in(cell) for cell in rows[-1] if cell.strip()):
+        return rows
+    return [
+        [cell.strip().removesuffix(unit_in(cell)).strip() for cell in row] if any(map(unit_in, row)) else row
+        for row in rows
+    ]
+
+
+def _behind_a_note(rows: list[list[str]], first: int, width: int) -> tuple[int, str]:
+    """The first row of a table behind a line of one number, which stands below a title, and what is noted of it."""
+    table = rows[first + 1 : first + 1 + _BELOW]
+    if filled(rows[first]) != 1 or len(table) < _BELOW or not all(_is_body(row, width) for row in table):
+        return first, ""
+    if any(filled(row) != width for row in table):
+        return first, ""
+    return first + 1, f"'{rows[first][0].strip()}' alone in a line below the title is taken for no value"
 
 
 def _of_comments(rows: list[list[str]], sign: str, width: int) -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -26,6 +26,10 @@ _POWER = re.compile(rb"(?<=[\d.])\*\^(?=[+-]?\d)")  # the exponent of Mathematic
 _LISTS = re.compile(rb"\s*(?:[\w.]+\s*[=(]\s*){0,2}(?:\[\s*\[|\{\s*\{)(?=[^\]}:\"]*[\]}])")
 _BETWEEN_ROWS = re.compile(rb"[\]}]\s*[,;]?\s*[\[{]")
 _AROUND = re.compile(rb"^[^\[{]*[\[{]\s*[\[{]|[\]}]\s*[\]}].*\Z", re.DOTALL)
+# numbers in the brackets of MATLAB, below comments: `data = [0 1; 2 3];`
+_MATRIX = re.compile(
+    rb"\A(?P<above>(?:[ \t]*(?:%[^\n]*)?\n)*)[ \t]*[A-Za-z]\w*[ \t]*=[ \t]*\[(?P<rows>[-+.,;\w \t\n]*)\][ \t]*;?\s*\Z"
+)
 _HIGH = re.compile(rb"[\x80-\xff]")  # a byte of no English letter
 _LETTERS = re.compile(rb"(?:[\x81-\x9f][\x40-\x7e\x80-\xfc]){2,}")  # signs, kana and most kanji of Shift-JIS
 _ARROW, _LONG = (
@@ -177,7 +181,9 @@ def _is_shift_jis(raw: bytes) -> bool:
 
 
 def _without_brackets(text: bytes) -> bytes:
-    """Rows in brackets, `{{0, 1}, {2, 3}}` or `[[0 1] [2 3]]`, as lines of their own; any other text as it is."""
+    """Rows in brackets, `{{0, 1}, {2, 3}}`, `[[0 1] [2 3]]` or `a = [0 1; 2 3];`, as lines; any other text as it is."""
+    if (matrix := _MATRIX.match(text)) is not None:
+        return matrix["above"] + re.sub(rb"[ \t]*;[ \t]*\n?", b"\n", matrix["rows"].strip()) + b"\n"
     if not _LISTS.match(text):
         return text
     rows = _BETWEEN_ROWS.split(_AROUND.sub(b"", text))
