@@ -20,6 +20,7 @@ from gear_damping.identification.oscillator.fit import OscillatorFit, fit_oscill
 from gear_damping.identification.oscillator.linear_model import DAMPING
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import WHOLE, Segments
+from gear_damping.interface.base_reading import base_reading
 from gear_damping.interface.far_from_stated import far_from_stated
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.interface.lack_of_fit import lack_of_fit, sentence
@@ -112,7 +113,8 @@ def content_of(measurement: Measurement, fitted: Fitted) -> dict[str, Any]:
         "differing": differs,
         "undamped": undamped,
         "not_yet_free": not_yet_free,
-        "contradicted": contradicted(
+        "contradicted": (base_reading(measurement) if is_lacking or undamped else None)
+        or contradicted(
             found.problem.free, found.fitted.shared.tolist(), {name: name.split(".")[-1] for name in found.given}
         )
         or _far_off(found, measurement)
