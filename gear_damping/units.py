@@ -112,7 +112,8 @@ _ALSO = {
     "dps": "deg/s", "rps": "rev/s", "Meter": "m", "meter": "m", "meters": "m", "metre": "m", "metres": "m",
     "min-1": "1/min", "/min": "1/min", "r/min": "rpm", "tr/min": "rpm",
     "hertz": "Hz", "Hertz": "Hz", "kilohertz": "kHz", "S/s": "Hz", "kS/s": "kHz", "MS/s": "MHz",
-    "Sa/s": "Hz", "kSa/s": "kHz", "sps": "Hz", "fps": "Hz", "Second": "s", "Seconds": "s",
+    "Sa/s": "Hz", "kSa/s": "kHz", "samples/s": "Hz", "ks/s": "kHz",
+    "samples/sec": "Hz", "sps": "Hz", "fps": "Hz", "Second": "s", "Seconds": "s",
     "percent": "%", "m/sec^2": "m/s^2", "m/sec2": "m/s^2",
     "ms^-2": "m/s^2", "ms^-1": "m/s", "ms-2": "m/s^2", "ms-1": "m/s",  # no milliseconds: their powers are no motion
 }  # fmt: skip

@@ -80,6 +80,8 @@ def _is_gear(seen: _Seen) -> bool:
 def _gear_response(seen: _Seen) -> Found:
     """Something that a simulation, or the orders of a casing, can be compared with."""
     if not (seen.error or seen.on_a_shaft or seen.casing):
+        if "gear" in seen.encoders and ({"pinion_angle"} & {*seen.channels} or "tacho" in seen.encoders):
+            return  # said of the encoder
         if "gear" in seen.encoders:
             rule, remedy = "the gear's encoder alone is no response", "declare encoders.pinion beside it, or a channel"
             yield seen.problem("encoders", rule, remedy)
@@ -171,7 +173,9 @@ def _encoder_beside_a_channel(seen: _Seen) -> Found:
     others = [f"{place}.{name}" for name, there, place in angles if name in there]
     if "gear" in seen.encoders and not seen.both_encoders and others:
         rule = f"has no meaning without encoders.pinion beside {others[0]}, which gives the angle"
-        yield seen.problem("encoders.gear", rule, "keep one of the two")
+        remedy = f"declare encoders.pinion in the place of {others[0]}"
+        remedy += ", with counts_per_revolution: 360 of an angle in deg" if "pinion_angle" in others[0] else ""
+        yield seen.problem("encoders.gear", rule, f"{remedy}, or leave this one out")
 
 
 def _reference(seen: _Seen) -> Found:

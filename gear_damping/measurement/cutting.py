@@ -29,7 +29,11 @@ _ROUNDING = 1e-9  # of a rate: what its digits leave
 
 
 def window_rows(
-    seconds: NDArray[np.float64], window: tuple[float, float], key: str = "window", source: str = ""
+    seconds: NDArray[np.float64],
+    window: tuple[float, float],
+    key: str = "window",
+    source: str = "",
+    remedy: str = "stay within it",
 ) -> tuple[int, int]:
     """The first row at or after the begin of a window, and the first row at or after its end.
 
@@ -38,6 +42,7 @@ def window_rows(
         window: Begin and end in s on the same clock; the end itself is not in it.
         key: What the window is called in messages.
         source: The file that declares it.
+        remedy: What helps where it lies beyond the record.
 
     Raises:
         InputError: the window reaches beyond the record by more than one step, or no row lies in it.
@@ -48,7 +53,7 @@ def window_rows(
     first, last = float(np.nanmin(seconds)), float(np.nanmax(seconds))
     if begin < first - step - near or end > last + step + near:
         digits = 6 + int(np.log10(max(1.0, abs(first) / (last - first)))) if last > first else 6
-        rule, remedy = f"the record goes from {first:.{digits}g} to {last:.{digits}g} s", "stay within it"
+        rule = f"the record goes from {first:.{digits}g} to {last:.{digits}g} s"
         raise InputError(Problem(key, rule, list(window), remedy, source))
     inside = np.flatnonzero((seconds >= begin - near) & (seconds < end - near))
     if not inside.size:

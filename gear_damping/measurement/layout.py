@@ -229,7 +229,7 @@ class AnyRecord(Declared):
     )
     slice: Annotated[tuple[int, int], Rows()] = key("Rows a to b-1, counted from 0.", "rows")
     window: Window = key("The rows between two times, instead of `slice`.", "rows")
-    resample: Annotated[Quantity, Measured("Hz")] = key("Rate to come down to, behind an anti-alias filter.", "values")
+    resample: Annotated[Quantity, Rate()] = key("Rate to come down to, behind an anti-alias filter.", "values")
     sampling_rate: Annotated[Quantity, Rate()] = key("Constant rate, here or under channels.", "time base")
 
     @model_validator(mode="after")

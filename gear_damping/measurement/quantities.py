@@ -111,6 +111,9 @@ class Instant(Value):
     def read(self, value: Any, name: str) -> float | Quantity:
         """The number, or the quantity in s."""
         said = said_as(value)
+        if isinstance(value, str) and ":" in value:
+            rule = "is a clock, and a window is in s from the record's first sample, from which clocks count"
+            refuse(rule, value, "write s from there, for example 5 s")
         return Number().read(value, name) if said is None else Quantity(to_si(*said, "s", ""), "s")
 
     def says(self) -> str:

@@ -16,6 +16,7 @@ from gear_damping.measurement.cutting import rows_beside, slower, window_rows
 from gear_damping.measurement.declaration import ChannelPlan, EncoderPlan, RecordPlan, TimePlan
 from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, pulse_times, shaft_angle
 from gear_damping.measurement.file_clocks import FileClocks, conflict_with_file, two_clocks
+from gear_damping.measurement.formats.moments import DAY
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.named_units import unit_at_end
 from gear_damping.measurement.rows import LEAST_SAMPLES, MOST_MISSING, Columns, Rows, filled_in, last_number
@@ -120,7 +121,8 @@ class RawReader:
         blank = 0 if stop or not columns else self.columns.blank_at_the_end([column for column, _ in columns], n)
         self.rows = Rows(first, stop or n - blank, blank)
         if self.plan.window:
-            within = window_rows(self._seconds(), self.plan.window, f"{self.plan.key}.window", self.source)
+            key = f"{self.plan.key}.window"
+            within = window_rows(self._seconds(), self.plan.window, key, self.source, self._window_remedy())
             self.rows = replace(self.rows, first=first + within[0], stop=first + within[1])
         if self.rows.count < LEAST_SAMPLES:
             rule = f"{self.rows.count} samples; a record needs at least {LEAST_SAMPLES}"
@@ -130,6 +132,17 @@ class RawReader:
                 remedy = f"name another column: {self.table.path.name} holds {self.table.listing(True)}"
                 remedy = remedy if max(self.table.lengths) >= LEAST_SAMPLES else "use a longer file"
             raise InputError(Problem(self.plan.key, rule, None, remedy, self.source))
+
+    def _window_remedy(self) -> str:
+        """What helps where a window lies beyond the record; dates and clocks count from the first of them."""
+        column, key = self.plan.timing.column, f"{self.plan.key}.channels.time"
+        begins = None if column is None else self.table.begins(self.table.index(column, key))
+        if begins is None:
+            return "stay within it"
+        ends = [f"{end - begins % DAY:.6g}" for end in self.plan.window]
+        said = "; of the same day these are" if begins % DAY <= self.plan.window[0] else ""
+        remedy = "stay within it, in s from the first sample, from which dates and clocks count"
+        return f"{remedy}{said} {ends[0]} to {ends[1]} s" if said else remedy
 
     def _samples(self, columns: Sequence[tuple[str | int, str]]) -> int:
         """The number of rows where no column can be read: of times of pulses alone those that all of them cover."""
@@ -206,7 +219,9 @@ class RawReader:
         if rate is None and clock is None:
             if not any(problem.key.startswith(self.plan.key) for problem in self.problems):
                 rule = "neither time nor sampling_rate is given"
-                remedy = "write sampling_rate: {value: 50, unit: kHz}"
+                said, stated = self._stated_rate()
+                remedy = f"write sampling_rate: {stated:.6g} Hz, as '{said}' in the file says" if stated else ""
+                remedy = remedy or "write sampling_rate: {value: 50, unit: kHz}"
                 raise InputError(Problem(f"{self.plan.key}.channels", rule, None, remedy, self.source))
             return None
         start, rows = clock[0] if clock else self.begins, self.rows
@@ -216,6 +231,13 @@ class RawReader:
             return replace(base, findings=(*self.clocks.other_rate(rate, rows.first, rows.stop), *found))
         is_other = rate is not None and abs(rate / clock[1] - 1) > _SAME_RATE
         return replace(base, findings=(conflict_with_file(rate, clock[1]), *found) if is_other else found)
+
+    def _stated_rate(self) -> tuple[str, float]:
+        """The words that state one rate beside the values of a file, and the rate in Hz; 0 where none does."""
+        if self.table.stated_rate:
+            return self.table.stated_rate
+        rates = {rate: said for said, rate in self.table.stated_rates.values()}
+        return next(((said, rate) for rate, said in rates.items()), ("", 0.0)) if len(rates) == 1 else ("", 0.0)
 
     def _refuse_by_turns(self) -> None:
         """Refuse rows of several sensors by turns; rows that are told apart already are of one."""

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_damping.measurement.formats.not_applied import not_applied, said_of
 from gear_damping.measurement.formats.stated_rate import beside_their_units, stated_rate
 from gear_damping.measurement.formats.table import (
     ArrayTable,
@@ -24,8 +25,6 @@ from gear_damping.measurement.formats.table import (
 SUFFIXES = (".h5", ".hdf5", ".hdf")
 DEADLY = True  # a damaged file may end the process
 
-_FACTORS = ("scale", "scale_factor", "factor", "gain", "sensitivity", "calibration", "calibration_factor", "slope")
-_ZEROS = ("add_offset", "offset", "intercept")  # that they may have to be moved by
 _SINCE = re.compile(r"\s+since\s.*$", re.I | re.S)  # a time counts from
 _UNIT_ATTRIBUTES = ("unit", "units", "Unit", "Units", "unit_string")
 
@@ -52,25 +51,13 @@ def read(path: Path, max_bytes: int) -> Table:
         groups = [one for one in items if not isinstance(one, h5py.Dataset)]
         settings = _settings(groups)
         rates = {one.name.strip("/"): stated for one in groups if (stated := stated_rate(_settings([one])))}
-        left = {name: scales for one in datasets if (scales := _not_applied(one)) for name, *_ in _fields(one)}
-        notes = [
-            f"{path.name}: '{name}' has an attribute {attribute} = {value}, which is not applied"
-            for name, scales in left.items()
-            for attribute, value in scales.items()
-        ]
+        left = {name: scales for one in datasets if (scales := not_applied(one.attrs)) for name, *_ in _fields(one)}
     table = ArrayTable(path, held, left_out)
     table.stated_rate = stated_rate(settings)
     table.stated_rates = rates
     table.not_applied = left
-    table.notes += tuple(notes)
+    table.notes += said_of(path.name, left)
     return table
-
-
-def _not_applied(dataset: Any) -> dict[str, float]:
-    """The attributes by which numbers may have to be multiplied or moved: nothing says that they are."""
-    neutral = {**dict.fromkeys(_FACTORS, 1), **dict.fromkeys(_ZEROS, 0)}
-    found = {name: value for name, value in dataset.attrs.items() if name.lower() in neutral and np.size(value) == 1}
-    return {name: value for name, value in found.items() if value != neutral[name.lower()]}
 
 
 def _items(file: Any) -> list[Any]:

@@ -7,7 +7,7 @@ in them are records, `data[0].x`.
 
 import json
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.measurement.formats.moments import moments_of
+from gear_damping.measurement.formats.not_applied import not_applied, said_of
 from gear_damping.measurement.formats.number_texts import is_number
 from gear_damping.measurement.formats.stated_rate import rate_beside
 from gear_damping.measurement.formats.table import ArrayTable, Held, Table, held_arrays, unreadable
@@ -47,7 +48,20 @@ def read(path: Path, max_bytes: int) -> Table:
             left_out += other
         table = ArrayTable(path, _channels(held), left_out)
     table.stated_rate = rate_beside(single)
+    table.not_applied = _scales(held, single)
+    table.notes += said_of(path.name, table.not_applied)
     return table
+
+
+def _scales(held: list[Held], single: Mapping[str, NDArray]) -> dict[str, dict[str, float]]:
+    """The factors and zeros that stand beside the values of a channel, by its name."""
+    found = {}
+    for one in held:
+        below = f"{one.name}."
+        beside = {name[len(below) :]: value.item() for name, value in single.items() if name.startswith(below)}
+        if one.name and one.name not in single and (scales := not_applied(beside)):
+            found[one.name] = scales
+    return found
 
 
 def _channels(held: list[Held]) -> list[Held]:

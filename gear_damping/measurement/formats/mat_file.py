@@ -139,6 +139,23 @@ def _unpacked_size(path: Path, limit: int) -> int:
     return total
 
 
+def _is_matlabs(path: Path) -> bool:
+    """Whether MATLAB's head stands before the HDF5 of a file; other programs may leave it out."""
+    with path.open("rb") as file:
+        return file.read(4) != _HDF5_MAGIC
+
+
+def _tree(h5py: Any, group: Any) -> dict[str, Any]:
+    """The groups and arrays of a file that is HDF5 alone, by their names; what holds no numbers is a word on it."""
+    found: dict[str, Any] = {}
+    for name, item in group.items():
+        if isinstance(item, h5py.Group):
+            found[name] = _tree(h5py, item)
+        else:
+            found[name] = np.squeeze(item[()]) if item.dtype.kind in "fiubc" and item.size else "text"
+    return found
+
+
 def _read_hdf5(path: Path, max_bytes: int) -> dict[str, Any]:
     h5py, pymatreader = extra_library("h5py", path), extra_library("pymatreader", path)
     sizes, objects = [], []
@@ -153,6 +170,9 @@ def _read_hdf5(path: Path, max_bytes: int) -> dict[str, Any]:
         file.visititems(visit)
         names = [name for name in file if not name.startswith("#")]
     refuse_size(path, sum(sizes), max_bytes)
+    if not _is_matlabs(path):
+        with h5py.File(path, "r") as file:
+            return _tree(h5py, file)
     plain = [name for name in names if name not in objects]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # of classes, which are left out here and said
