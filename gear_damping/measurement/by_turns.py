@@ -36,6 +36,8 @@ def refuse_by_turns(
     Raises:
         InputError: a column says so, and the stamps or the values bear it out.
     """
+    signals = [np.where(np.isfinite(one), one, np.nan) for one in signals]
+    stamps = None if stamps is None else np.where(np.isfinite(stamps), stamps, np.nan)
     shared = stamps is not None and float(np.mean(np.diff(stamps) == 0)) > _REPEATED
     if not shared and not any(map(_comes_back, signals)):
         return
@@ -52,6 +54,25 @@ def refuse_by_turns(
             rule = f"its rows hold {len(said)} signals by turns ({', '.join(said[:4])}), as column {named} says"
             remedy = f"give each a column of its own, as pivot of pandas does with columns={named}, or a file for each"
             raise InputError(Problem("file", rule, str(table.path), remedy, source))
+
+
+def seen_by_turns(table: Table, columns: Sequence[Array], time: int | None) -> tuple[str, ...]:
+    """What is said of a table whose channels nobody has named yet, where its rows are of several sensors by turns.
+
+    Args:
+        table: The table.
+        columns: The values of its columns; (0,) of those that cannot be read.
+        time: The place of the stamps, if there are any.
+    """
+    rows = slice(0, max(table.lengths, default=0))
+    whole = {k: one for k, one in enumerate(columns) if k != time and one.size == rows.stop}
+    signals = [one for one in whole.values() if np.unique(one).size > _MOST]
+    stamps = None if time is None or columns[time].size != rows.stop else columns[time]
+    try:
+        refuse_by_turns(table, stamps, signals, set() if time is None else {time}, rows, "")
+    except InputError as error:
+        return tuple(f"{one.rule}; {one.remedy}" for one in error.problems)
+    return ()
 
 
 def _comes_back(values: Array) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.by_turns import seen_by_turns
 from gear_damping.measurement.column_kinds import (
     CONSTANT,
     ELSEWHERE,
@@ -160,6 +161,7 @@ def inspect_table(table: Table, clock: str | int | None = None) -> Inspection:
     length = _length(columns, stamps)
     rows, taken = _of_one_recording(columns, stamps, length, _rows([c for c in columns if c.values.size == length]))
     base, faults = _base(table, columns, stamps, length, rows)
+    faults += seen_by_turns(table, [column.values for column in columns], stamps.index if stamps else None)
     named, rate = (
         (may_be_rate or _stated_rate(table, columns, length)) if base is None and stamps is None else ("", None)
     )

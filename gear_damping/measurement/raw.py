@@ -101,8 +101,14 @@ class RawReader:
 
     def _with_unit(self, plan: EncoderPlan) -> EncoderPlan:
         """An encoder with the unit of its column: as declared, else that of the file, else s of times and V."""
-        unit = plan.unit or self.table.unit(self.table.index(plan.column, f"{plan.key}.column"))
-        return replace(plan, unit=unit or ("s" if plan.timestamps else "V"))
+        place = self.table.index(plan.column, f"{plan.key}.column")
+        header = self.table.unit(place)
+        unit = plan.unit or header or ("s" if plan.timestamps else "V")
+        named = unit_by_name(self.table.names[place], self.table.names) if plan.timestamps and header is None else None
+        if named and is_time(unit) and abs(to_si(1.0, named, "s") / to_si(1.0, unit, "s") - 1) > SAME_UNIT:
+            rule = f"the times are in {unit}, and their column is named '{self.table.names[place]}'"
+            raise InputError(Problem(f"{plan.key}.unit", rule, plan.unit, f"write unit: {named}", self.source))
+        return replace(plan, unit=unit)
 
     def _find_rows(self) -> None:
         """The number of rows is that of the time stamps, else of the first column that can be read."""

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from gear_damping.errors import InputError
+from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.inspection import inspect_table
 from gear_damping.measurement.load import load_measurement
 
 TIME = np.arange(300) * 0.02
@@ -62,6 +64,8 @@ def by_turns(folder, names, label="id", lag=0.0, each=(1.0, 0.3, 5.0), channels=
 def test_sensors_that_speak_by_turns_in_one_column_are_refused(names, label, lag, tmp_path):
     with pytest.raises(InputError, match=f"2 signals by turns .*column '{label}' says; remedy: give each a column of"):
         load_measurement(by_turns(tmp_path, names, label, lag))
+    faults = inspect_table(read_table(tmp_path / "long.csv")).faults
+    assert any(f"2 signals by turns ({names[0]}, {names[1]}), as column '{label}' says" in one for one in faults)
 
 
 def test_three_sensors_at_a_declared_rate_are_refused(tmp_path):
@@ -96,4 +100,5 @@ def test_numbers_that_come_again_with_a_revolution_are_no_sensors(label, tmp_pat
 
 def test_a_sensor_of_a_file_of_its_own_is_read(tmp_path):
     path = by_turns(tmp_path, (1,))
+    assert inspect_table(read_table(tmp_path / "long.csv")).faults == ()
     assert load_measurement(path).records[0].sampling_rate == pytest.approx(50)

@@ -321,6 +321,20 @@ def test_two_encoders_that_stamp_their_edges_need_no_column_but_a_rate(bench, ra
     assert np.std(seen - true) < 0.01 * np.std(true)
 
 
+def test_times_of_pulses_in_another_unit_than_their_name_says_are_refused(bench):
+    """Absent, their unit is s."""
+    edges = np.arange(1, 900) * 1e3
+    _rig(bench, a_us=edges, b=edges / 1e6)
+    record = bench.content["records"][0]
+    record["channels"] = {"sampling_rate": {"value": 5, "unit": "kHz"}}
+    stamped = {"counts_per_revolution": 90}
+    record["encoders"] = {"pinion": {"timestamps": "a_us"} | stamped, "gear": {"timestamps": "b"} | stamped}
+    said = "encoders.pinion.unit: the times are in s, and their column is named 'a_us'; remedy: write unit: us"
+    assert said in "\n".join(bench.problems(write=False))
+    record["encoders"]["pinion"]["unit"] = "us"
+    assert bench.load_as_it_is().records[0].sampling_rate == pytest.approx(5000)
+
+
 @pytest.mark.parametrize(
     ("rate", "resample", "is_said"), [(2.0, None, True), (8.0, None, False), (8.0, {"value": 2, "unit": "kHz"}, False)]
 )
