@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import pytest
 import torch
 
+from gear_damping.explanation.model import followed as followed_module
 from gear_damping.explanation.model.followed import followed_alone, of_one_flank
 from gear_damping.identification.output_error.records import Observed
 
@@ -77,13 +78,29 @@ def steps(*levels):
     return torch.cat([torch.full((100,), float(level), dtype=torch.float64) for level in levels])
 
 
-def test_a_record_whose_torque_changes_its_sign_is_left_out_of_the_nominal_fit():
+@pytest.fixture
+def crossed(monkeypatch):
+    """The names of records whose error shows that flanks change; none at first."""
+    names = set()
+    monkeypatch.setattr(followed_module, "are_crossed", lambda evidence: [r.name in names for r in evidence.fit])
+    return names
+
+
+def test_a_record_whose_torque_changes_its_sign_is_left_out_of_the_nominal_fit(crossed):
     zero = steps(30.0, -0.5)  # a meter whose zero is off
     evidence = Records((driven("a", steps(20, 40)), driven("b", steps(-20, 25)), driven("c", None), driven("d", zero)))
     assert [one.name for one in of_one_flank(evidence).fit] == ["a", "c", "d"]
 
 
-def test_where_all_or_no_torques_change_their_sign_all_records_stay():
+def test_a_record_whose_flanks_change_under_a_steady_torque_is_left_out_too(crossed):
+    crossed.add("b")
+    evidence = Records(tuple(driven(name, steps(20, 25)) for name in "abc"))
+    assert [one.name for one in of_one_flank(evidence).fit] == ["a", "c"]
+    crossed.update("ac")
+    assert of_one_flank(evidence) is evidence
+
+
+def test_where_all_or_no_torques_change_their_sign_all_records_stay(crossed):
     for torque in (steps(-20, 25), steps(20, 25), steps(-20, -25)):
         evidence = Records((driven("a", torque), driven("b", torque)))
         assert of_one_flank(evidence) is evidence

@@ -16,7 +16,12 @@ from second_rig.sensors import Noise
 from gear_damping.explanation.evidence.records import Evidence, evidence_of
 from gear_damping.explanation.explain import fitting_solver, with_noise
 from gear_damping.explanation.model import parting_flanks
-from gear_damping.explanation.model.parting_flanks import flanks_part, stay_closed, with_parting_flanks
+from gear_damping.explanation.model.parting_flanks import (
+    are_crossed,
+    flanks_part,
+    stay_closed,
+    with_parting_flanks,
+)
 from gear_damping.explanation.steps.calibrate import calibrated
 from gear_damping.identification.output_error.segments import Segments
 from gear_damping.measurement.load import load_measurement
@@ -132,6 +137,31 @@ def test_an_error_that_is_measured_from_its_zero_on_shows_flanks_that_part(at_re
     assert part(-closed)
     assert not part(-closed, conditions={})
     assert not part(-closed, inputs={"pinion_torque": -torch.ones_like(closed)})
+
+
+def test_an_error_that_falls_from_one_flank_to_the_other_is_told_from_waves_and_runouts(at_resonance):
+    """Waves of closed flanks, a runout far larger than the load's deflection, and a fall across a gap at once."""
+    evidence = at_resonance[1]
+    first = evidence.fit[0]
+    (base, _), (inertia, _) = shafts(evidence)[0], (1 / sum(r**2 / j for r, j in shafts(evidence)), None)
+    stiffness = evidence.known.values["mesh_stiffness_max"]
+    natural = math.sqrt(stiffness / inertia) / (2 * math.pi)
+    static = first.conditions["pinion_torque"] / base / stiffness
+    time = torch.arange(8000, dtype=torch.float64) / first.sampling_rate
+    wave = static * torch.sin(2 * math.pi * natural * time)
+    runout = 60 * static * torch.sin(2 * math.pi * 25 * time)
+    fall = torch.where(time < 0.01, -20 * static, 0.0)
+
+    def crossed(response, **more):
+        one = replace(first, response=response, **more)
+        return are_crossed(replace(evidence, fit=(one,), noise=0.05 * static))[0]
+
+    assert not crossed(wave + runout)
+    assert crossed(wave + fall)
+    assert not crossed(wave + fall, observed=replace(first.observed, name="acceleration"))
+    assert not crossed(
+        wave + fall, conditions=first.conditions | {"pinion_torque": 20 * first.conditions["pinion_torque"]}
+    )
 
 
 def test_a_mesh_that_carries_nothing_for_long_shows_it_wherever_the_zero_lies(at_resonance):

@@ -64,6 +64,20 @@ def test_a_cause_of_which_no_figure_is_known_within_itself_is_any(cubic, expecte
     assert without_a_figure(outcome, ["backlash"], evidence) == ""  # without figures there is nothing to know
 
 
+@pytest.mark.parametrize(("moved", "expected"), [(1e3, "backlash"), (0.0, "")])
+def test_a_size_that_moves_nothing_bends_to_nothing(moved, expected, monkeypatch):
+    """A gap that flanks part in without ever touching its far side: it is there, however wide it is."""
+    gap = FreeParameter("backlash.gap", 1e-4, logarithmic=True)
+    sensitivity = torch.full((1, 1, 4, 1), moved * NOISE, dtype=torch.float64)
+    outcome = SimpleNamespace(
+        problem=SimpleNamespace(free=[gap]),
+        fitted=SimpleNamespace(shared=torch.zeros(1), prediction=SimpleNamespace(sensitivity=sensitivity)),
+    )
+    covariances = torch.full((1, 1), 1e4, dtype=torch.float64)
+    monkeypatch.setattr("gear_damping.explanation.trials.told_size.covariance_of", lambda *_: covariances)
+    assert without_a_figure(outcome, ["backlash"], SimpleNamespace(noise=NOISE)) == expected
+
+
 def test_what_the_viscous_damping_does_already_is_told_of_no_other_law():
     extra = ("asymmetric_friction.damping_forward", "asymmetric_friction.damping_backward")
     assert not told(0.0, extra)

@@ -9,6 +9,7 @@ from dataclasses import replace
 from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.model.parting_flanks import are_crossed
 from gear_damping.identification.output_error.records import FitRecord
 
 BEYOND_NOISE = 3.0  # times the noise: what is left at least of a record that a model has lost
@@ -44,12 +45,13 @@ def followed_alone(
 
 
 def of_one_flank(evidence: Evidence) -> Evidence:
-    """The evidence without fitted records whose torque changes its sign; as it is where it all or none of them do.
+    """The evidence without fitted records whose torque changes its sign, or whose error shows that the flanks change.
 
-    There the teeth cross the gap between their flanks, whatever its size, and the softest of springs would come
-    nearest to that.
+    As it is where all or none of them do. There the teeth cross the gap between their flanks, whatever its size, and
+    the softest of springs, or the stiffest of dampers, would come nearest to that.
     """
-    kept = tuple(record for record in evidence.fit if not _is_reversed(record))
+    pairs = zip(evidence.fit, are_crossed(evidence), strict=True)
+    kept = tuple(record for record, is_crossed in pairs if not is_crossed and not _is_reversed(record))
     return replace(evidence, fit=kept) if 0 < len(kept) < len(evidence.fit) else evidence
 
 

@@ -6,7 +6,7 @@ mesh to what the impacts do, and from there no fit finds back to a gap. What is 
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from math import inf
+from math import inf, pi
 
 import numpy as np
 import torch
@@ -39,6 +39,8 @@ STARTS = tuple(share / GAPS[-1] for share in GAPS)  # of the largest usual gap
 RESPONSE, TORQUE = "transmission_error", "pinion_torque"
 CLEAR, PARTED = 3.0, 0.01  # noises; share of samples: noise alone, wherever it lies, reaches it in one of 700
 LIGHT = 0.2  # of the load: what the mesh carries where flanks part, beside a wrong inertia or torque
+CROSSED = 4.0  # static deflections: twice what flanks move by that just do not part
+FAR_OUT = 6.0  # deviations of the noise of three samples, 1.2 times that of one: a million samples hold none beyond
 LONG = 0.05  # of a record: a wave of the force that just touches zero stays below a fifth for four times as long
 PARABOLA, SHORTEST = 2, 3  # degree, and least samples of the window in which the motion is one
 SHOWN = 0.9  # of an acceleration at the natural frequency, by a window that is not too wide
@@ -67,6 +69,28 @@ def _crosses_zero(evidence: Evidence) -> bool:
 def _is_unloaded(evidence: Evidence) -> bool:
     """Whether the force in the mesh stays near zero in a record: flanks push and do not pull."""
     return any(float(np.mean(carried < LIGHT)) > LONG for carried in _carried(evidence) if carried is not None)
+
+
+def are_crossed(evidence: Evidence) -> list[bool]:
+    """By fitted record, whether its error moves farther at once than the load presses the flanks together.
+
+    At once is within half a natural period, from the middle of where it was half a period before and is half a period
+    later, which runouts hardly change. A wave of closed flanks moves by two static deflections so, where it just does
+    not part them; over a gap the teeth go by many.
+    """
+    rig = first_gear_pair(evidence)
+    values = rig_of(rig, evidence).values
+    return [_is_crossed(record, values, evidence.noise) for record in evidence.fit]
+
+
+def _is_crossed(record: FitRecord, values: Mapping[str, float], noise: float) -> bool:
+    half = round(record.sampling_rate * pi / values["natural_frequency"])
+    if record.observed.name != RESPONSE or record.observed.derivatives or half < 1 or len(record.response) <= 2 * half:
+        return False
+    load = values["load_per_pinion_torque"] * float(_stated(record, TORQUE).abs().mean())
+    error = record.response
+    moved = (error[half:-half] - (error[: -2 * half] + error[2 * half :]) / 2).abs().max()
+    return bool(load > 0 and moved > CROSSED * load / values["mean_stiffness"] + FAR_OUT * noise / record.weight)
 
 
 def stay_closed(evidence: Evidence) -> bool:

@@ -28,6 +28,8 @@ def polarity_fault(evidence: Evidence, nominal: Outcome | None, fitted: Fit) -> 
         nominal: The nominal model fitted to them; None where it does not stay finite.
         fitted: Fits it to others.
     """
+    if nominal is not None and _follows_one(nominal, evidence):
+        return None
     left = 1.0 if nominal is None else _share_left(nominal, evidence)
     for turned, name in _turned(evidence):
         if _loses_few(turned, fitted):
@@ -40,6 +42,13 @@ def polarity_fault(evidence: Evidence, nominal: Outcome | None, fitted: Fit) -> 
         if share < min(LEAVES_LESS * left, evidence.settings.lost_share):
             return _finding(name, left if nominal else None, share)
     return None
+
+
+def _follows_one(nominal: Outcome, evidence: Evidence) -> bool:
+    """Whether one record is followed with the signs as they are declared, which are those of all of them."""
+    pairs = list(zip(nominal.fit_residuals, evidence.fitted, strict=False))
+    same = len(nominal.fit_residuals) == len(evidence.fitted)
+    return same and any(float(left.square().sum()) < LEAVES_LESS * ac_energy(record) for left, record in pairs)
 
 
 def _turned(evidence: Evidence) -> Iterator[tuple[Evidence, str]]:

@@ -63,7 +63,8 @@ def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
 def without_a_figure(outcome: Outcome, names: Sequence[str], evidence: Evidence) -> str:
     """The first of several causes that has figures and not one of them known within itself; empty where none has.
 
-    It bends to any motion.
+    It bends to any motion. What a figure does not move any more (a gap whose far flank is never touched) bends to none:
+    flanks part, however wide it is.
     """
     if not names:
         return ""
@@ -74,7 +75,8 @@ def without_a_figure(outcome: Outcome, names: Sequence[str], evidence: Evidence)
         within = WITHIN if free[i].logarithmic else abs(float(free[i].value(shared[i]))) / free[i].scale
         return float(half[i]) < within
 
-    own = {name: [i for i, p in enumerate(free) if p.name.startswith(f"{name}.")] for name in names}
+    moves = _moving(outcome, evidence)
+    own = {name: [i for i, p in enumerate(free) if p.name.startswith(f"{name}.") and moves[i]] for name in names}
     return next((name for name, places in own.items() if places and not any(map(is_known, places))), "")
 
 
@@ -87,11 +89,16 @@ def _are_sized(outcome: Outcome, places: list[int], shape: list[int], evidence: 
     """
     singular_values, free = covariance_of(outcome, evidence), outcome.problem.free
     half = QUANTILE * singular_values.diagonal().clamp(min=0).sqrt()
-    columns = outcome.fitted.prediction.sensitivity.unbind(-1)
-    moves = [float(column.norm()) >= SILENT * evidence.noise for column in columns]
+    moves = _moving(outcome, evidence)
     if shape and not any(moves[i] and half[i] <= WITHIN for i in shape):
         return False
     return not any(free[i].logarithmic and moves[i] and half[i] > WITHIN for i in places)
+
+
+def _moving(outcome: Outcome, evidence: Evidence) -> list[bool]:
+    """By coordinate, whether it changes the prediction by more than nothing."""
+    columns = outcome.fitted.prediction.sensitivity.unbind(-1)
+    return [float(column.norm()) >= SILENT * evidence.noise for column in columns]
 
 
 def _orthogonal_columns(outcome: Outcome, places: list[int], cause: str) -> Tensor:
