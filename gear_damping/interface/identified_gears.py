@@ -202,19 +202,9 @@ def _far_off(outcome: Outcome, evidence: Evidence) -> str | None:
     }
     return (
         contradicts_stated(outcome, evidence)
-        or _other_shaft(outcome, evidence)
+        or torque_of_the_other_shaft(outcome, evidence)
         or _unlike_steel(outcome, evidence)
         or far_from_stated(pairs, "unit and gain of the torque and of the response, and the value itself")
-    )
-
-
-def _other_shaft(outcome: Outcome, evidence: Evidence) -> str | None:
-    """A torque that may be the other shaft's; an angle of the other shaft makes the same of a transmission error."""
-    said = torque_of_the_other_shaft(outcome, evidence)
-    if not said or evidence.channel.name != "transmission_error":
-        return said or None
-    return (
-        f"{said} A transmission error in an angle, as arcsec, that is the other shaft's shows so too: check its `shaft`"
     )
 
 

@@ -25,7 +25,9 @@ def test_it_is_said_where_stiffness_and_teeth_agree_and_little_is_followed(
     monkeypatch.setattr(other_shafts_torque, "nrmse", lambda residuals, records: missed)
     parameters = {"mesh_stiffness_max": 2.9e8, "n_teeth_pinion": teeth[0], "n_teeth_gear": teeth[1]}
     outcome = SimpleNamespace(values={"fourier_mesh_stiffness.maximum": stiffer * 2.9e8}, fit_residuals=[])
-    said = torque_of_the_other_shaft(outcome, SimpleNamespace(parameters=parameters, fitted=()))
+    said = torque_of_the_other_shaft(
+        outcome, SimpleNamespace(parameters=parameters, fitted=(), channel=SimpleNamespace(name="acceleration"))
+    )
     assert bool(said) is is_said
     if is_said:
         assert f"give it times {teeth[0]}/{teeth[1]}" in said
@@ -35,3 +37,15 @@ def test_it_is_said_where_stiffness_and_teeth_agree_and_little_is_followed(
 def test_nothing_is_said_without_a_stated_or_a_fitted_stiffness(stated):
     evidence = SimpleNamespace(parameters={"mesh_stiffness_max": stated, "n_teeth_pinion": 21, "n_teeth_gear": 37})
     assert torque_of_the_other_shaft(SimpleNamespace(values={}), evidence) == ""
+
+
+@pytest.mark.parametrize(("channel", "names_it"), [("transmission_error", True), ("acceleration", False)])
+def test_a_torque_of_the_other_shaft_may_be_an_angle_of_it(channel, names_it, monkeypatch):
+    """Of arcsec beside the wrong `shaft` the torque alone was blamed."""
+    monkeypatch.setattr(other_shafts_torque, "nrmse", lambda residuals, records: 0.6)
+    parameters = {"mesh_stiffness_max": 2.9e8, "n_teeth_pinion": 21, "n_teeth_gear": 37}
+    outcome = SimpleNamespace(values={"fourier_mesh_stiffness.maximum": 1.8 * 2.9e8}, fit_residuals=[])
+    evidence = SimpleNamespace(parameters=parameters, fitted=(), channel=SimpleNamespace(name=channel))
+    said = torque_of_the_other_shaft(outcome, evidence)
+    assert "give it times 21/37" in said
+    assert ("check its `shaft`" in said) == names_it

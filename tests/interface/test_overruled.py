@@ -1,14 +1,12 @@
 """Values of a gear pair that the model and the file of its records both have: said where they differ."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from closed_forms import free_decay
 
 import gear_damping as gd
-from gear_damping.interface import identified_gears
 
 RATE, STIFFNESS, TORQUE = 50e3, 1.5e8, 14.6
 FREE = ["damping_ratio", "fourier_mesh_stiffness.maximum"]
@@ -61,12 +59,3 @@ def test_what_every_record_has_of_its_own_is_no_value_of_the_rig(given, ringing)
     ((name, value),) = given.items()
     assert f"{name} = {value:g} of the model has no effect: every record has its own" in found.table()
     assert name not in found.model.given
-
-
-@pytest.mark.parametrize(("channel", "names_it"), [("transmission_error", True), ("acceleration", False)])
-def test_a_torque_of_the_other_shaft_may_be_an_angle_of_it(channel, names_it, monkeypatch):
-    """Of arcsec beside the wrong `shaft` the torque alone was blamed."""
-    monkeypatch.setattr(identified_gears, "torque_of_the_other_shaft", lambda *_: "Give it times 23/41.")
-    said = identified_gears._other_shaft(None, SimpleNamespace(channel=SimpleNamespace(name=channel)))
-    assert said.startswith("Give it times 23/41.")
-    assert ("check its `shaft`" in said) == names_it

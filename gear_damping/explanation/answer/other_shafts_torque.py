@@ -9,6 +9,7 @@ from gear_damping.explanation.model.nominal_gear_pair import MESH
 
 LIKE_THE_TEETH = log(1.1)  # between both ratios: a drawing's stiffness is known to some per cent
 UNLIKE_ONE = log(1.3)  # of the teeth: nearer to one, the stiffness alone may be wrong by as much
+ANGLE = "A transmission error in an angle, as arcsec, that is the other shaft's shows so too: check its `shaft`."
 MISSED = 0.05  # of the variance: a right torque beside a wrong stiffness is followed better
 
 
@@ -27,8 +28,9 @@ def torque_of_the_other_shaft(outcome: Outcome, evidence: Evidence) -> str:
         return ""
     if nrmse(outcome.fit_residuals, evidence.fitted) ** 2 < MISSED:
         return ""
-    return (
+    said = (
         f"mesh_stiffness_max comes out at {found:.3g} N/m, {stiffer:.3g} times what is stated, and the gear has "
         f"{ratio:.3g} times the teeth of the pinion: if pinion_torque is the torque on the gear's shaft, give it times "
         f"{teeth[0]:g}/{teeth[1]:g}."
     )
+    return f"{said} {ANGLE}" if evidence.channel.name == "transmission_error" else said
