@@ -227,12 +227,17 @@ class Bench:
         return self.no_worse(outcome.left_out, best.left_out, self._blocks(best))
 
     def no_worse(self, other: Sequence[Tensor], best: Sequence[Tensor], blocks: Sequence[int]) -> bool:
-        """The same of residuals, over blocks of so many samples by record."""
+        """The same of residuals, over blocks of so many samples by record.
+
+        What errors of a nominal model that is far off add to the noise is not in what the best leaves.
+        """
         gain, t = paired_gain(other, best, blocks)
-        samples = sum(len(residual) for residual in best) / self.noise.correlation
-        if gain * samples < self.settings.rival_evidence * self.noise.value**2:
+        count = sum(len(residual) for residual in best)
+        left = sum(float(residual.square().sum()) for residual in best) / count
+        variance = min(self.noise.value**2, left)
+        if gain * count / self.noise.correlation < self.settings.rival_evidence * variance:
             return True
-        return t < self.settings.rival_t or gain < SAME * self.noise.value**2
+        return t < self.settings.rival_t or gain < SAME * variance
 
     def paired_gain(self, before: Outcome, after: Outcome) -> tuple[float, float]:
         """Gain of the second over the first on left-out records, with its t."""
