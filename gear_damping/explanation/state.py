@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from gear_damping.explanation.evidence.excess import Excess
+from gear_damping.explanation.evidence.excess import Excess, excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.model.candidates import Candidate
 from gear_damping.explanation.model.hypothesis import Outcome
@@ -147,10 +147,21 @@ class State:
         Where other records hardly show what one does, as one at resonance, that may be so though the model leaves less
         than chance may.
         """
-        settings, left = self.bench.settings, self.current.percent
-        takes = left - self.bench.excess(fit.outcome).percent
-        is_enough = left > 0 and takes >= settings.least_share * left
+        settings, beyond = self.bench.settings, self.beyond_sensor if self.is_far_off else self.bench.excess
+        left = beyond(self.outcome).percent
+        is_enough = left > 0 and left - beyond(fit.outcome).percent >= settings.least_share * left
         return is_enough and fit.is_seen_in_fit and fit.t > settings.accepted_t
+
+    @property
+    def is_far_off(self) -> bool:
+        """Whether the nominal model misses so much of what it is fitted to that its errors elsewhere hide the rest.
+
+        Of one record it tells a part that it has not seen no better than by chance then, whatever is missing.
+        """
+        gross, bench = self.bench.settings.gross_percent, self.bench
+        if self.first.threshold <= gross:
+            return False
+        return excess(self.nominal.fit_residuals, bench.evidence.fitted, bench.floor, bench.settings).percent > gross
 
     def with_itself_passed(self) -> "State":
         """The same, which a search may come back to."""
@@ -172,7 +183,13 @@ class State:
 
     def accepting(self, best: Refit, rivals: tuple[str, ...] = ()) -> "State":
         """The same with a further cause."""
-        outcome = self.bench.until_converged(best.outcome)
+        outcome, bench = self.bench.until_converged(best.outcome), self.bench
+        if self.is_far_off and bench.evidence.sealed:  # the errors of the better model count from here
+            bench = replace(bench, noise=replace(bench.noise, scatter=outcome.scatter))
+            return replace(self, bench=bench)._accepting(best, outcome, rivals)
+        return self._accepting(best, outcome, rivals)
+
+    def _accepting(self, best: Refit, outcome: Outcome, rivals: tuple[str, ...]) -> "State":
         share = min(self.share_taken(outcome), 1.0)
         self.bench.log(f"{best.name} takes {100 * share:.1f} % of the excess on left-out records")
         return replace(self, outcome=outcome, accepted=(*self.accepted, Accepted(best.name, best, share, rivals)))

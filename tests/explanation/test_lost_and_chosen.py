@@ -137,6 +137,18 @@ def test_too_little_to_bet_on_does_not_tell_two_apart(difference, correlation, e
         assert bench.is_as_good(*outcomes) is expected
 
 
+def test_errors_of_a_nominal_model_that_is_far_off_make_no_rivals():
+    """They count as noise, of 300 times what the best one leaves: one that leaves a tenth of that is told from it."""
+    best = torch.full((SAMPLES,), NOISE, dtype=torch.float64)
+    other, held = 30 * best, [SimpleNamespace(duration=SAMPLES / 100.0, sampling_rate=100.0)]
+    noise = SimpleNamespace(value=300 * NOISE, correlation=1.0)
+    bench = Bench(SimpleNamespace(settings=SearchSettings(), judged=held), noise, None, None, noise)
+    outcomes = [SimpleNamespace(left_out=[residual]) for residual in (other, best)]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("gear_damping.explanation.trials.bench.block_samples", lambda *_: [SAMPLES // 16])
+        assert not bench.is_as_good(*outcomes)
+
+
 def test_what_is_tried_as_a_whole_is_fitted_whatever_gain_is_predicted_at_one_size():
     names = ("coulomb_friction", "power_law_damping", "sensor_delay", "sensor_drift", "sensor_saturation")
     ranked = [score(name, 0.5 / 10**k) for k, name in enumerate(names)]

@@ -7,12 +7,11 @@ from numpy.typing import NDArray
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.hypothesis import Outcome
-from gear_damping.explanation.model.two_modes import figures
+from gear_damping.explanation.model.two_modes import OF_TWO, figures
 from gear_damping.explanation.state import State
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 
 STEP = 1e-3  # of a standard deviation of a parameter, over which its modes are linear
-OF_TWO = 4  # figures of two modes that both swing: a frequency and a damping ratio of each
 
 
 def modes_of(state: State) -> list[str]:

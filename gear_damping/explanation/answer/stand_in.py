@@ -21,6 +21,7 @@ from gear_damping.explanation.model.gives_back import gives_back
 from gear_damping.explanation.model.homogeneity import block_of, error_of
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.model.rig import strongest_frequencies
+from gear_damping.explanation.model.two_modes import decay_time
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.statistics.bursts import BURST_KURTOSIS, kurtosis, pooled_kurtosis
@@ -99,12 +100,13 @@ def swinging_on(state: State) -> Iterator[str]:
     else drives, and no mode is without damping. What gives back within them what it took from the first mode is none:
     a line takes nothing.
     """
-    longest = state.bench.evidence.duration
+    evidence = state.bench.evidence
+    longest = sum(one.duration for one in evidence.records) if evidence.one_record else evidence.duration
     for cause in state.accepted:
         effect = cause.effect
         if isinstance(effect, ExtraStates):
-            goes_on = effect.decay_time(state.outcome.values_of(effect.name)) > GOES_ON * longest
-            if goes_on and not gives_back(effect, state.outcome, state.bench.evidence):
+            goes_on = decay_time(state.outcome, effect) > GOES_ON * longest
+            if goes_on and not gives_back(effect, state.outcome, evidence):
                 yield effect.name
 
 

@@ -10,7 +10,9 @@ from gear_damping.explanation.model.hypothesis import Given, Outcome, placed
 from gear_damping.identification.oscillator.linear_model import DAMPING
 from gear_damping.physics.cause import Cause
 from gear_damping.physics.model import Model
+from gear_damping.physics.terms import ExtraStates
 
+OF_TWO = 4  # figures of two modes that both swing: a frequency and a damping ratio of each
 First = tuple[dict[str, float], float, float]  # own values; stiffness and damping of the first mass, per unit of mass
 
 
@@ -35,6 +37,19 @@ def settled(outcome: Outcome, name: str) -> dict[str, float]:
     own, changed, damped = _cause(model, name).settles(found, stiffness, damping)
     spring, mass = model.system.spring, float(given[DAMPING]) / damping if damping else 1.0
     return {f"{name}.{key}": value for key, value in own.items()} | {spring: mass * changed, DAMPING: mass * damped}
+
+
+def decay_time(outcome: Outcome, effect: ExtraStates) -> float:
+    """Of what an effect swings by itself, in s; of a free swing that of the mode that dies away last.
+
+    There two masses share their dampings as their coupling goes, and only those of the modes are told.
+    """
+    alone = effect.decay_time(outcome.values_of(effect.name))
+    if effect.cause.modes is None or outcome.problem.records[0].inputs:
+        return alone
+    found = figures(outcome, effect.name, outcome.values)
+    rates = found[::2] * found[1::2].clip(min=0) * (2 * pi / 100)
+    return alone if len(found) < OF_TWO else 1 / max(float(rates.min()), 1e-300)
 
 
 def _cause(model: Model, name: str) -> Cause:
