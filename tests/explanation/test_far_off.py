@@ -33,7 +33,7 @@ def state(fitted, threshold, sealed=True):
 
 
 def judged_by(evidence, noise, threshold, nominal):
-    """A state of which conditions left out hold nothing beside the errors of this model, and 80 % beside noise alone."""
+    """A state of which others hold nothing beside the errors of this model, and 80 % beside noise alone."""
 
     class Held(MadeUpBench):
         def excess(self, outcome):
