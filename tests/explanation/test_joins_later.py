@@ -13,7 +13,7 @@ from gear_damping.explanation.trials import refit as module
     ("cost", "reach", "joins"), [(90.0, inf, True), (60.0, 20.0, True), (61.0, 20.0, False), (30.0, -1.0, True)]
 )
 def test_it_joins_half_way(cost, reach, joins):
-    candidate = SimpleNamespace(hypothesis="first", later=("width",), non_nested=False, own_levels=False)
+    candidate = SimpleNamespace(hypothesis="first", settled=(), later=("width",), non_nested=False, own_levels=False)
     fitted = []
 
     def fit(hypothesis, *_, **__):
@@ -35,7 +35,7 @@ def test_it_joins_half_way(cost, reach, joins):
 @pytest.mark.parametrize(("apart", "is_finite", "taken"), [(40.0, True, 40.0), (90.0, True, 60.0), (40.0, False, 60.0)])
 def test_a_second_beginning_is_taken_where_it_leads_to_less(apart, is_finite, taken):
     """As springs of single records do, which no mean one leads to."""
-    candidate = SimpleNamespace(hypothesis="first", later=(), non_nested=False)
+    candidate = SimpleNamespace(hypothesis="first", settled=(), later=(), non_nested=False)
     begun = object()
 
     def fit(hypothesis, evidence, initial, *_):
