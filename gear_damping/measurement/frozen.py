@@ -18,6 +18,8 @@ _REPEATS = 5  # of a value in a row, from which it is held: at a share of zeros 
 _HELD = 5e-3  # share of the other steps that are zero, from which values are coarse and repeat by themselves
 _BESIDE = 50  # steps on either side that say how fast the motion was
 MOSTLY = 0.5  # share of the stretches that leap, where a motion was lost; else values are renewed slowly throughout
+_EIGHTH = 8  # part of what moves, before it is kept, that says how much is moving yet
+_STILL = 0.05  # of the whole range: what a motion that has died away still moves over
 _LEAP = 0.5  # times what it moves over as many usual steps: less is how a motion begins again
 
 
@@ -49,6 +51,8 @@ def _stopped(channel: Channel) -> Finding | None:
         return None
     if abs(steps[first - 1]) < _LEAP * float(np.median(before[before > 0])):
         return None  # slower and slower, as friction brings a motion to rest
+    if np.ptp(values[first - first // _EIGHTH : first + 1]) < _STILL * np.ptp(values):
+        return None  # it had died away, and friction may hold it wherever it was
     message = (
         f"{channel.name} keeps one value over its last {kept} samples, at which the motion before did not come to "
         f"rest: a buffer was filled up, or the sensor was lost; end the record with slice: [0, {first}] or a window"

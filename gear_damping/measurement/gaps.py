@@ -31,6 +31,7 @@ _NO_WORSE = 1.5  # times what it misses of a single sample: what is missed is no
 _MOST_LOST = 0.02  # of the samples; beyond, another clock is as likely where the values do not tell
 _MOST_SINGLE, _SINGLE = 0.1, 2  # of the samples in single holes, that a record may lack; samples in such a hole
 _TWICE = 2.0  # standard errors that a share over single holes must be beyond that of a clock's jump by, which is 0
+_SHORT = 2.5  # usual steps that a shift may last for the values not to have to tell: a lost sample, and jitter
 _FEW_LONG = 0.01  # of the steps may be long where the values do not tell why
 _LONGER = 0.05  # of a step, by which one must last longer to tell anything: rounding makes some longer by less
 _FEWEST_HOLES = 20  # that can be tried in a record
@@ -139,8 +140,8 @@ def _pauses(record: Record) -> tuple[Finding, ...]:
     """The findings of a record, where its clock jumps and its values moved as long only with a note of it.
 
     Over a pause of the recorder a value moves by its slope times the pause, over a jump of its clock by that of one
-    step. The slope is that of lines through a few samples on either side. What no channel tells of shifts by less than
-    a step is a note too: half a step away is what jitter may be.
+    step. The slope is that of lines through a few samples on either side. What no channel tells of shifts by a step and
+    a half at most is a note too: half a step away is what jitter may be, and one more a lost sample.
     """
     jumps = [finding for finding in record.findings if finding.kind == CLOCK_JUMPS]
     shares = [share_over_gaps(c.values, record.time) for c in record.channels.values() if jumps]
@@ -167,9 +168,10 @@ def _is_beyond(share: float, error: float) -> bool:
 
 
 def _are_short(stamps: NDArray[np.float64]) -> bool:
-    """Whether no step is as long as two, and the stamps are those of a steady clock beside a few."""
+    """Whether no step is as long as a lost sample makes two and a half, and few are long."""
     steps = np.diff(stamps)
-    return bool(steps.max() < 2 * np.median(steps)) and len(_lasting(steps)) <= _FEW_LONG * steps.size
+    usual = float(np.median(steps))
+    return bool(steps.max() < _SHORT * usual) and np.mean(steps > _GAP * usual) <= _FEW_LONG
 
 
 def share_over_gaps(values: NDArray[np.float64], stamps: NDArray[np.float64]) -> tuple[float, float]:

@@ -71,3 +71,11 @@ def test_a_motion_that_friction_brought_to_rest_ends_in_a_rest():
     moves = np.arange(400) / 100
     slower = np.exp(-0.1 * moves) * np.cos(np.pi * moves)  # stops where it turns
     assert _said(np.concatenate([slower, np.full(60, slower[-1])])) is None
+
+
+@pytest.mark.parametrize(("swings", "is_told"), [(0.004, False), (0.4, True)])
+def test_a_motion_that_has_died_away_is_held_where_it_is(swings, is_told):
+    """A filter behind the sensor makes its last steps long ones; of a large motion the same is a buffer's end."""
+    values = (1 - swings) * np.exp(-0.3 * T) * np.cos(8 * T) + swings * np.cos(8 * T) + 1e-7 * np.arange(T.size)
+    kept = np.concatenate([values, np.full(200, values[-1])])
+    assert (_said(kept) is not None) is is_told
