@@ -11,7 +11,7 @@ from gear_damping.explanation.model.two_modes import OF_TWO, figures
 from gear_damping.explanation.state import State
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 
-STEP = 1e-3  # of a standard deviation of a parameter, over which its modes are linear
+STEP = 1e-4  # of a coordinate, most of which are logarithms: over it modes are linear, whatever its deviation is
 
 
 def modes_of(state: State) -> list[str]:
@@ -26,6 +26,8 @@ def _said(outcome: Outcome, name: str, evidence: Evidence) -> str:
     if len(found) < OF_TWO:
         return ""
     half = QUANTILE * _deviations(outcome, name, evidence)
+    if not np.isfinite(half).all():
+        return ""
     modes = [
         f"{f:.5g} Hz ({f - df:.5g} … {f + df:.5g}) with {z:.3g} % ({max(z - dz, 0.0):.3g} … {z + dz:.3g}) of damping"
         for f, z, df, dz in ((found[i], found[i + 1], half[i], half[i + 1]) for i in (0, 2))
@@ -36,12 +38,13 @@ def _said(outcome: Outcome, name: str, evidence: Evidence) -> str:
 def _deviations(outcome: Outcome, name: str, evidence: Evidence) -> NDArray[np.float64]:
     """Standard deviations of the figures, (4,), by how they change along the fitted coordinates."""
     covariance, shared = covariance_of(outcome, evidence).numpy(), outcome.fitted.shared
-    steps = STEP * np.sqrt(covariance.diagonal().clip(min=0))
 
     def at(place: int, way: int) -> NDArray[np.float64]:
-        aside = shared + way * steps[place] * torch.eye(len(shared), dtype=shared.dtype)[place]
+        aside = shared + way * STEP * torch.eye(len(shared), dtype=shared.dtype)[place]
         return figures(outcome, name, {key: float(v) for key, v in outcome.problem.unknowns.parameters(aside).items()})
 
-    slopes = [(at(i, 1) - at(i, -1)) / (2 * step) if step > 0 else np.zeros(OF_TWO) for i, step in enumerate(steps)]
-    slope = np.stack(slopes, 1)
+    ends = [(at(place, 1), at(place, -1)) for place in range(len(shared))]
+    if any(len(one) < OF_TWO for both in ends for one in both):  # one hardly swings
+        return np.full(OF_TWO, np.inf)
+    slope = np.stack([(more - less) / (2 * STEP) for more, less in ends], 1)
     return np.sqrt(np.einsum("fi,ij,fj->f", slope, covariance, slope))
