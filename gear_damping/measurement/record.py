@@ -117,6 +117,10 @@ class Channel:
         if not self.declared_unit:
             object.__setattr__(self, "declared_unit", self.unit)
 
+    def __str__(self) -> str:
+        low, high = (float(end) / self.declared_factor for end in (self.values.min(), self.values.max()))
+        return f"{self.name}: {low:.6g} to {high:.6g} {self.declared_unit}"
+
 
 @dataclass(frozen=True, eq=False)
 class Record:
@@ -166,6 +170,14 @@ class Record:
                 rule = f"channel '{name}' has {channel.values.shape} samples and time {self.time.shape}"
                 raise ValueError(f"{rule}; all channels of a record share its time")
 
+    def __str__(self) -> str:
+        role = f" ({self.role})" if self.role else ""
+        head = f"{self.name}{role}: {len(self.time)} samples at {self.sampling_rate:.6g} Hz, {self.duration:.6g} s"
+        stated = ", ".join(f"{name} {quantity.value:.6g}" for name, quantity in self.conditions.items())
+        said = [f"{finding.severity}: {finding.message}" for finding in self.findings]
+        lines = [*map(str, self.channels.values()), *([f"conditions in SI: {stated}"] if stated else [])]
+        return "\n  ".join([head, *lines, *(f"note: {note}" for note in self.notes), *said])
+
     @property
     def duration(self) -> float:
         """Time from the first to the last sample, in s."""
@@ -197,6 +209,10 @@ class Measurement:
     source: Path
     segment_s: float | None = None
     own_system: "type[System] | None" = field(default=None, repr=False)
+
+    def __str__(self) -> str:
+        many = f"{len(self.records)} record{'s' if len(self.records) > 1 else ''}"
+        return "\n".join([f"{self.system}, {many} of {self.source}", *map(str, self.records)])
 
     @property
     def base(self) -> "type[System]":

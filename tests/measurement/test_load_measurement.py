@@ -374,3 +374,13 @@ def test_a_copy_that_judges_what_was_fitted_to_it_is_said(tmp_path, roles, kinds
         if one.kind.startswith("fitted_")
     ]
     assert found == kinds
+
+
+def test_a_measurement_prints_what_was_read(bench):
+    text = str(bench.load()).splitlines()
+    assert text[0].startswith("gear_pair, ")
+    assert str(bench.folder) in text[0]
+    ends = f"{bench.columns['dte'].min():.6g} to {bench.columns['dte'].max():.6g} um"
+    assert f"  transmission_error: {ends}" in text
+    assert any(line.startswith("run_1 (fit): ") and "at 20000 Hz" in line for line in text)
+    assert max(map(len, text)) < 300
