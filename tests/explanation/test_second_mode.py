@@ -15,6 +15,7 @@ from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.load import load_measurement
 from gear_damping.physics.cause import Rig
 from gear_damping.physics.effects.second_mode import COUPLED, SecondMode
+from gear_damping.physics.systems.traits import Trait
 
 ROLES = ("fit", "fit", "holdout")
 RATE, SECONDS = 200.0, 12.0
@@ -199,3 +200,15 @@ def test_both_modes_of_one_free_swing_are_told_though_no_mass_is(tmp_path):
         assert numbers[6 * k + 1] < frequency < numbers[6 * k + 2]
         assert numbers[6 * k + 4] < 100 * ratio < numbers[6 * k + 5]
         assert numbers[6 * k + 5] - numbers[6 * k + 4] < 100 * ratio
+
+
+@pytest.mark.parametrize(("inputs", "settled"), [((), ("mass_ratio",)), (("force",), ())])
+def test_how_heavy_the_second_mass_is_stays_where_it_was_put_in_a_free_swing_alone(inputs, settled):
+    rig = Rig(
+        "oscillator",
+        inputs=inputs,
+        frequencies=(7.0,),
+        values={"natural_frequency": 30.0},
+        traits=frozenset({Trait.REST}),
+    )
+    assert {recipe.settled for recipe in SecondMode.cause.recipes_for(rig)} == {settled}
