@@ -9,7 +9,7 @@ from torch import Tensor
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, slowest_time
 from gear_damping.identification.output_error.angles import MESH_PHASE
-from gear_damping.identification.output_error.holdout import Frozen, predict_holdout
+from gear_damping.identification.output_error.holdout import Frozen, HeldOut, predict_holdout
 from gear_damping.identification.output_error.least_squares import Fitted
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import SEPARATOR, FreeParameter
@@ -38,12 +38,29 @@ def opened(
     if initial and _is_astray(held.residuals, outcome.fitted, outcome.problem):
         # another model's angles may lie in another valley
         anew = predict_holdout(frozen, evidence.holdout, scale, evidence.segments)
-        held = min(held, anew, key=lambda one: sum(float(r.square().sum()) for r in one.residuals))
+        held = _better_of_each(held, anew, [record.name for record in evidence.holdout])
     return replace(
         outcome,
         holdout=held.residuals,
         own=held.own,
         error_amplification=max(outcome.error_amplification, held.error_amplification),
+    )
+
+
+def _better_of_each(one: HeldOut, other: HeldOut, names: Sequence[str]) -> HeldOut:
+    """Of every record the prediction that leaves less: with its parameters frozen a model has no record in common."""
+    costs = [[float(left.square().sum()) for left in found.residuals] for found in (one, other)]
+    taken = [one if mine <= theirs else other for mine, theirs in zip(*costs, strict=True)]
+    from_which = dict(zip(names, taken, strict=True))
+    own = {
+        name: from_which.get(name.partition(SEPARATOR)[2], one).own.get(name, value)
+        for name, value in other.own.items()
+    }
+    return HeldOut(
+        [found.predictions[i] for i, found in enumerate(taken)],
+        [found.residuals[i] for i, found in enumerate(taken)],
+        max(found.error_amplification for found in taken),
+        own,
     )
 
 
