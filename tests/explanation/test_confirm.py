@@ -9,10 +9,12 @@ import torch
 
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.model.cross_fit import folds_of
+from gear_damping.explanation.model.opened import _better_of_each
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.steps import confirm
 from gear_damping.explanation.trials.bench import Bench
+from gear_damping.identification.output_error.holdout import HeldOut
 from gear_damping.identification.output_error.records import FitRecord
 
 BLOCKS, BLOCK = 16, 50
@@ -163,3 +165,18 @@ def test_a_model_without_a_cause_is_the_one_before_it_came_where_that_is_better(
     near = state_of([("needed", ()), ("doubtful", ())], model(), without={"doubtful": model(cost=1.5)})
     near = near.with_cause(0, state.accepted[0])
     assert confirm._fewer(near, "doubtful").fitted.cost == 1.5
+
+
+def test_of_held_out_records_each_has_the_better_of_its_two_predictions():
+    """The angle of one begins in the right valley from another model's, that of the other all around."""
+
+    def found(left, angle):
+        residuals = [torch.full((4,), one, dtype=torch.float64) for one in left]
+        own = {f"mesh_phase@{name}": angle for name in ("a", "b")}
+        return HeldOut([residual + 1 for residual in residuals], residuals, angle, own)
+
+    better = _better_of_each(found((0.1, 5.0), 1.0), found((3.0, 0.2), 2.0), ["a", "b"])
+    assert [float(one[0]) for one in better.residuals] == [0.1, 0.2]
+    assert [float(one[0]) for one in better.predictions] == pytest.approx([1.1, 1.2])
+    assert better.own == {"mesh_phase@a": 1.0, "mesh_phase@b": 2.0}
+    assert better.error_amplification == 2.0
