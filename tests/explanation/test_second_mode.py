@@ -179,6 +179,8 @@ def test_masses_with_the_same_modes_exchange_their_energy(own, stiffness, dampin
 def test_modes_that_no_such_masses_share_their_damping_by_stay_as_they_were_found():
     own = {"mass_ratio": 0.05, "frequency": 0.5, "damping_ratio": 0.1}
     assert SecondMode.cause.settles(own, 100.0, 0.3) == (own, 100.0, 0.3)
+    one = {"mass_ratio": 1e-18, "frequency": 10 / (2 * math.pi), "damping_ratio": 0.01}
+    assert SecondMode.cause.settles(one, 100.0, 0.2) == (one, 100.0, 0.2)  # two modes that are one
 
 
 @pytest.mark.slow

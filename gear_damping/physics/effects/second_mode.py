@@ -23,6 +23,7 @@ ABOUT = 2.0  # of its frequency, which the load of short records tells to so muc
 LOW, HIGH = 1e-4, 1.0  # of the ratio that is fitted: beyond, the other mass is the first one
 NEAR = 1.15  # of the line that it is sought at: farther, it would take the place of the first mode
 COUPLED = 0.9  # of the largest ratio of masses with the same modes: nearly in tune, and their dampings still told apart
+LIGHTEST = 1e-9  # ratio of the masses that the parameter may have at least
 TURNS = 20  # of what damping adds, each of which leaves some of its square of what the one before left
 DAMPED = (1e-5, 0.3)  # damping ratios of what shows as a line
 
@@ -83,6 +84,8 @@ def _as_coupled(values: Mapping[str, float], stiffness: float, damping: float) -
         return dict(values), stiffness, damping
     _, cubic, square, linear, product = np.poly([*poles, *np.conj(poles)]).real
     ratio = COUPLED * (square**2 / (4 * product) - 1)
+    if ratio < LIGHTEST:  # two modes that are one
+        return dict(values), stiffness, damping
     is_slower = stiffness < (1 + values["mass_ratio"]) * (2 * pi * values["frequency"]) ** 2
     link = first = 0.0
     for _ in range(TURNS):
