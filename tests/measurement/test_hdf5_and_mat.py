@@ -10,7 +10,7 @@ from gear_damping.errors import InputError
 from gear_damping.measurement.formats import table as table_module
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.units import parse_unit
-from tests.measurement.library import MATRIX, TIME, WAVE, shapes_of, values_of
+from tests.measurement.stored import MATRIX, TIME, WAVE, shapes_of, values_of
 
 # HDF5
 

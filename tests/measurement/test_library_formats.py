@@ -10,7 +10,7 @@ from scipy.io import savemat
 
 from gear_damping.errors import InputError
 from gear_damping.measurement.formats.registry import read_table
-from tests.measurement.library import TIME, WAVE, values_of
+from tests.measurement.stored import TIME, WAVE, values_of
 
 # xlsx
 

@@ -8,7 +8,7 @@ from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 from gear_damping.errors import InputError
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.formats.uff_file import rounded_rate
-from tests.measurement.library import TIME, WAVE, shapes_of, values_of
+from tests.measurement.stored import TIME, WAVE, shapes_of, values_of
 
 # UFF
 
