@@ -183,16 +183,12 @@ class State:
 
     def accepting(self, best: Refit, rivals: tuple[str, ...] = ()) -> "State":
         """The same with a further cause."""
-        outcome, bench = self.bench.until_converged(best.outcome), self.bench
+        state, outcome, bench = self, self.bench.until_converged(best.outcome), self.bench
         if self.is_far_off and bench.evidence.sealed:  # the errors of the better model count from here
-            bench = replace(bench, noise=replace(bench.noise, scatter=outcome.scatter))
-            return replace(self, bench=bench)._accepting(best, outcome, rivals)
-        return self._accepting(best, outcome, rivals)
-
-    def _accepting(self, best: Refit, outcome: Outcome, rivals: tuple[str, ...]) -> "State":
-        share = min(self.share_taken(outcome), 1.0)
-        self.bench.log(f"{best.name} takes {100 * share:.1f} % of the excess on left-out records")
-        return replace(self, outcome=outcome, accepted=(*self.accepted, Accepted(best.name, best, share, rivals)))
+            state = replace(self, bench=replace(bench, noise=replace(bench.noise, scatter=outcome.scatter)))
+        share = min(state.share_taken(outcome), 1.0)
+        bench.log(f"{best.name} takes {100 * share:.1f} % of the excess on left-out records")
+        return replace(state, outcome=outcome, accepted=(*self.accepted, Accepted(best.name, best, share, rivals)))
 
     def share_taken(self, outcome: Outcome) -> float:
         """What another model takes of what this one leaves, as a share of what the nominal one leaves."""

@@ -13,7 +13,7 @@ from gear_damping.physics.model import Model
 from gear_damping.physics.terms import ExtraStates
 
 OF_TWO = 4  # figures of two modes that both swing: a frequency and a damping ratio of each
-First = tuple[dict[str, float], float, float]  # own values; stiffness and damping of the first mass, per unit of mass
+First = tuple[dict[str, float], float, float, float]  # own values; stiffness and damping per unit of mass, and the mass
 
 
 def figures(outcome: Outcome, name: str, values: Mapping[str, float]) -> NDArray[np.float64]:
@@ -25,7 +25,7 @@ def figures(outcome: Outcome, name: str, values: Mapping[str, float]) -> NDArray
         values: Of its free parameters, by name.
     """
     model = outcome.hypothesis.model
-    own, stiffness, damping = _first(model, name, placed(outcome.hypothesis.given, dict(values)))
+    own, stiffness, damping, _ = _first(model, name, placed(outcome.hypothesis.given, dict(values)))
     poles = _cause(model, name).modes(own, stiffness, damping)
     return np.array([part for pole in poles for part in (abs(pole) / (2 * pi), -100 * pole.real / abs(pole))])
 
@@ -33,10 +33,10 @@ def figures(outcome: Outcome, name: str, values: Mapping[str, float]) -> NDArray
 def settled(outcome: Outcome, name: str) -> dict[str, float]:
     """Values by flat name that make the same free motion, the effect's own put where each of them is told."""
     model, given = outcome.hypothesis.model, outcome.flat_given()
-    found, stiffness, damping = _first(model, name, given)
+    found, stiffness, damping, mass = _first(model, name, given)
     own, changed, damped = _cause(model, name).settles(found, stiffness, damping)
-    spring, mass = model.system.spring, float(given[DAMPING]) / damping if damping else 1.0
-    return {f"{name}.{key}": value for key, value in own.items()} | {spring: mass * changed, DAMPING: mass * damped}
+    first = {model.system.spring: mass * changed, DAMPING: mass * damped}
+    return {f"{name}.{key}": value for key, value in own.items()} | first
 
 
 def decay_time(outcome: Outcome, effect: ExtraStates) -> float:
@@ -60,4 +60,4 @@ def _first(model: Model, name: str, given: Given) -> First:
     prepared = model.prepare(model.values(1, **given))
     mass = float(prepared.derived["equivalent_mass"][0])
     own = {key.removeprefix(f"{name}."): float(v) for key, v in given.items() if key.startswith(f"{name}.")}
-    return own, float(prepared.derived["mean_stiffness"][0]) / mass, float(given[DAMPING]) / mass
+    return own, float(prepared.derived["mean_stiffness"][0]) / mass, float(given[DAMPING]) / mass, mass

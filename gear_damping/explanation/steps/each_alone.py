@@ -6,8 +6,6 @@ from gear_damping.explanation.trials.levels_alone import alone_beside
 from gear_damping.identification.oscillator.each_alone import said_of_each
 from gear_damping.physics.systems.traits import Trait
 
-TWO = 2  # records at least, that may be of two states of a rig
-
 
 def followed_one_by_one(state: State) -> str:
     """A sentence where a linear model of its own follows every record, and no cause was found, else nothing.
@@ -18,7 +16,7 @@ def followed_one_by_one(state: State) -> str:
         state: Where the search ended.
     """
     evidence = state.bench.evidence
-    if len({record.record for record in evidence.fit}) < TWO:
+    if len({record.record for record in evidence.fit}) == 1:
         return ""
     if state.accepted or not is_begun_anew(evidence) or not evidence.has(Trait.REST):
         return ""

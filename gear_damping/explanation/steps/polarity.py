@@ -46,9 +46,8 @@ def polarity_fault(evidence: Evidence, nominal: Outcome | None, fitted: Fit) -> 
 
 def _follows_one(nominal: Outcome, evidence: Evidence) -> bool:
     """Whether one record is followed with the signs as they are declared, which are those of all of them."""
-    pairs = list(zip(nominal.fit_residuals, evidence.fitted, strict=False))
-    same = len(nominal.fit_residuals) == len(evidence.fitted)
-    return same and any(float(left.square().sum()) < LEAVES_LESS * ac_energy(record) for left, record in pairs)
+    pairs = zip(nominal.fit_residuals, evidence.fitted, strict=True)
+    return any(float(left.square().sum()) < LEAVES_LESS * ac_energy(record) for left, record in pairs)
 
 
 def _turned(evidence: Evidence) -> Iterator[tuple[Evidence, str]]:
