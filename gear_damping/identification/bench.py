@@ -48,8 +48,8 @@ class Bench:
 
     @cached_property
     def true(self) -> Tensor:
-        """Damping ratio of each run, %."""
-        return self.runs.damping_ratio_percent.double()
+        """Damping ratio of each run that a family draws and networks learn, %: that of the laws that state one."""
+        return self.runs.stated_ratio_percent.double()
 
     @property
     def ends(self) -> tuple[float, float]:

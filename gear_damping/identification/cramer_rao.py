@@ -70,7 +70,7 @@ def cramer_rao(
     columns = torch.stack([_sensitivity(runs, one, used, solver) for one in flat], -1)
     for place, name in enumerate(names):
         if name == DAMPING_RATIO:  # the ratio grows with the coefficient
-            columns[..., place] *= (runs.values[flat[place]] / runs.damping_ratio_percent).unsqueeze(-1)
+            columns[..., place] *= (runs.values[flat[place]] / runs.stated_ratio_percent).unsqueeze(-1)
     weights = 1 / torch.as_tensor(noise, dtype=torch.float64).expand(len(columns)).square()
     information = columns.mT @ columns * weights[:, None, None]
     prior = torch.tensor([(expected or {}).get(name, inf) for name in names], dtype=torch.float64)

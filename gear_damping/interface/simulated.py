@@ -59,8 +59,18 @@ class Simulation:
 
     @property
     def damping_ratio_percent(self) -> Array:
-        """Equivalent damping ratio of all damping laws together at the reference velocity, % of critical, (batch,)."""
+        """Equivalent damping ratio of all damping laws together at the reference velocity, % of critical, (batch,).
+
+        Dry friction, hysteresis and what grows with the deflection count with what a harmonic motion of that velocity
+        loses to them, as in `identify`; `damping_ratio_by_law` tells them apart. It is nan without a damping law,
+        without a linear stiffness, and where a law has no such ratio.
+        """
         return self.runs.damping_ratio_percent.numpy()
+
+    @property
+    def damping_ratio_by_law(self) -> dict[str, Array]:
+        """What each damping law adds to `damping_ratio_percent`, % of critical, (batch,) by the name of the law."""
+        return {name: ratio.numpy() for name, ratio in self.runs.damping_ratio_by_law.items()}
 
     @property
     def names(self) -> tuple[str, ...]:

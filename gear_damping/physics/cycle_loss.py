@@ -1,6 +1,6 @@
 """What any damping force takes in a cycle, whether it follows the rate, the deflection or what was before."""
 
-from math import ceil, isfinite, pi
+from math import pi
 
 import torch
 from torch import Tensor
@@ -21,7 +21,7 @@ def damping_coefficient(effect: DampingForce, prepared: Prepared, speed: Tensor)
 
     c_eq = (1 / (pi V)) integral of F cos(phi) over a cycle of x' = V cos(phi), about the deflection of the mean load
     where there is one, the flanks in contact. Of a force with states of its own these are led through the motion by
-    the midpoint rule, in so many steps that none yields more than once in one; nan where that would be too many.
+    the midpoint rule, in so many steps that none yields more than once in one; nan of a member that needs too many.
 
     Args:
         effect: The force.
@@ -34,9 +34,11 @@ def damping_coefficient(effect: DampingForce, prepared: Prepared, speed: Tensor)
     if "mean_load" in derived:
         mean = derived["mean_load"] / derived["mean_stiffness"] / scales.length
     with_states = isinstance(effect, ExtraStates)
-    instants = _instants(velocity / frequency, p) if with_states else INSTANTS
-    if instants > MOST_INSTANTS:
+    needed = _instants(velocity / frequency, p) if with_states else torch.full_like(velocity, INSTANTS)
+    followed = needed <= MOST_INSTANTS
+    if not bool(followed.any()):
         return torch.full_like(velocity, torch.nan)
+    instants = int(needed[followed].max())
     step = 2 * pi / instants
 
     def moved(phase: float, extra: dict[str, Tensor]) -> Kinematics:
@@ -58,15 +60,16 @@ def damping_coefficient(effect: DampingForce, prepared: Prepared, speed: Tensor)
             total = total + effect.damping_force(at, p) * at.velocity / velocity
         if with_states:
             extra = _after(effect, extra, effect.state_rates(at, p), step / frequency)
-    return 2 * total / instants / velocity * scales.mass / scales.time
+    found = 2 * total / instants / velocity * scales.mass / scales.time
+    return torch.where(followed, found, torch.nan)
 
 
-def _instants(amplitude: Tensor, p: Values) -> int:
-    """Steps of a cycle of this amplitude, where a state says how fast it follows the motion."""
+def _instants(amplitude: Tensor, p: Values) -> Tensor:
+    """Steps of a cycle of each amplitude, (batch,), where a state says how fast it follows the motion."""
     if "fastest_rate" not in p:
-        return INSTANTS
-    turned = _TURNED * 2 * pi * float((amplitude * p["fastest_rate"]).max())
-    return max(INSTANTS, ceil(turned)) if isfinite(turned) else INSTANTS
+        return torch.full_like(amplitude, INSTANTS)
+    turned = (_TURNED * 2 * pi * amplitude * p["fastest_rate"]).ceil().clamp(min=INSTANTS)
+    return torch.where(turned.isfinite(), turned, torch.full_like(turned, INSTANTS))
 
 
 def _after(effect: ExtraStates, extra: dict[str, Tensor], rates: dict[str, Tensor], time: Tensor) -> dict[str, Tensor]:

@@ -1,5 +1,6 @@
 """What a simulation gives back."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -7,6 +8,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.model import Model
+from gear_damping.physics.ratio_by_law import ratio_by_law
 from gear_damping.physics.terms import ExtraStates, Recording, Sensor
 from gear_damping.simulation.series import ANGLE, ANGLE_RATE
 
@@ -57,20 +59,42 @@ class Runs:
         """The system's response before any sensor, (batch, time)."""
         return self.states["displacement"]
 
+    @cached_property
+    def damping_ratio_by_law(self) -> dict[str, Tensor]:
+        """What each damping law adds to `damping_ratio_percent`, in %, (batch,), by its name."""
+        stiffness, prepared = self.derived["mean_stiffness"], self.model.prepare(self.values)
+        ratios = ratio_by_law(self.model, self.values, prepared, stiffness, self.reference_velocity)
+        return {name: torch.where(stiffness > 0, 100 * ratio, torch.nan) for name, ratio in ratios.items()}
+
     @property
     def damping_ratio_percent(self) -> Tensor:
         """Equivalent damping ratio of every damping law together at the reference velocity, in %, (batch,).
 
-        It is nan where no effect of the model states one, and where there is no linear stiffness.
+        Dry friction, hysteresis and what grows with the deflection count with what a harmonic motion of that velocity
+        loses to them, as in `identify`. It is nan where the model has no damping law, where there is no linear
+        stiffness, and where a law has no such ratio.
         """
-        total = torch.zeros_like(self.derived["equivalent_mass"])
+        return self._summed(self.damping_ratio_by_law)
+
+    @property
+    def stated_ratio_percent(self) -> Tensor:
+        """Equivalent damping ratio of the laws that can be given by one (`Model.damping_laws`), in %, (batch,).
+
+        It is what networks learn and what `damping_ratio` means where it is free: the share of the coefficient. It is
+        nan where no effect of the model states one, and where there is no linear stiffness.
+        """
         mass, stiffness = self.derived["equivalent_mass"], self.derived["mean_stiffness"]
-        laws = self.model.damping_laws
-        for effect in laws:
+        found = {}
+        for effect in self.model.damping_laws:
             own = {p.name: self.values[f"{effect.name}.{p.name}"] for p in effect.parameters}
-            total = total + effect.damping_ratio(own, mass, stiffness, self.reference_velocity)
-        stated = stiffness > 0 if laws else torch.zeros_like(stiffness, dtype=torch.bool)
-        return torch.where(stated, 100 * total, torch.nan)
+            ratio = effect.damping_ratio(own, mass, stiffness, self.reference_velocity)
+            found[effect.name] = torch.where(stiffness > 0, 100 * ratio, torch.nan)
+        return self._summed(found)
+
+    def _summed(self, by_law: Mapping[str, Tensor]) -> Tensor:
+        """All of them together, (batch,); nan of none."""
+        empty = torch.full_like(self.derived["mean_stiffness"], 0.0 if by_law else torch.nan)
+        return sum(by_law.values(), empty)
 
     def channel(self, name: str) -> Tensor:
         """A series by name, (batch, time); the response also by the name that files give it."""

@@ -72,7 +72,7 @@ def asked_with_effects(
     for name, plan in plans.items():
         runs = run_plan(plan)
         signals = runs.record(torch.Generator().manual_seed(plan.seed + 2), skip=(SENSOR_NOISE,))
-        true = runs.damping_ratio_percent.double()
+        true = runs.stated_ratio_percent.double()  # what networks learn; an effect that damps adds nothing to it
         found[name] = {}
         for snr in levels:
             noise = signals.std(-1, correction=0) * 10 ** (-snr / 20)

@@ -65,7 +65,7 @@ def run_set_of(runs: Runs, plan: SimulationPlan) -> RunSet:
     generator, system = torch.Generator().manual_seed(plan.seed + 2), plan.model.system
     return RunSet(
         signals=runs.record(generator, skip=(SENSOR_NOISE,)).float(),
-        damping_ratio_percent=runs.damping_ratio_percent.float(),
+        damping_ratio_percent=runs.stated_ratio_percent.float(),
         sampling_rate=plan.sampling_rate,
         id=plan.hash[:16],
         quantities={name: runs.values[name] for name in CONDITIONS if name in runs.values},

@@ -25,7 +25,7 @@ def summary_of(runs: Runs, plan: SimulationPlan, channels: Channels) -> dict[str
     varied = [name for name in plan.prior.distributions if name != DAMPING_RATIO and name in runs.values]
     ratio, response = runs.damping_ratio_percent, channels[model.system.response]
     rms = (response - response.mean(1, keepdim=True)).square().mean(1).sqrt()
-    units = units_of(model)
+    units, by_law = units_of(model), runs.damping_ratio_by_law
     return {
         "system": model.system.name,
         "effects": {effect.name: effect.equation for effect in model.effects},
@@ -37,6 +37,7 @@ def summary_of(runs: Runs, plan: SimulationPlan, channels: Channels) -> dict[str
         "response": model.system.response,
         "unit": units.get(model.system.response, "m"),
         "damping_ratio_percent": [float(ratio.min()), float(ratio.max())],
+        "by_law": {name: [float(one.min()), float(one.max())] for name, one in by_law.items()},
         "varied": {name: model.system.unit_of(declared[name].unit) for name in varied},
         "channels": {name: {"unit": units.get(name, "")} | _range(series) for name, series in channels.items()},
         "each": [

@@ -57,12 +57,15 @@ def log_runs(settings: Settings, runs: Runs) -> None:
 def _damping(runs: Runs, law: str | None) -> str:
     """The damping ratios of the runs, or why there are none."""
     ratio = runs.damping_ratio_percent
-    if not runs.model.damping_laws:
-        return "no effect of the model states a damping ratio"
+    if not runs.damping_ratio_by_law:
+        return "no damping ratio is stated: the model has no damping law"
     if bool((runs.derived["mean_stiffness"] == 0).any()):
         return "no damping ratio can be stated: there is no linear stiffness, so nothing is critical"
+    if nameless := [name for name, one in runs.damping_ratio_by_law.items() if not bool(one.isfinite().all())]:
+        which = " and ".join(nameless)
+        return f"no damping ratio can be stated: {which} has none that could be worked out at {_velocity(runs)}"
     low, high = float(ratio.min()), float(ratio.max())
-    line = f"damping ratio {low:.3f} … {high:.3f} % of critical"
+    line = f"damping ratio {low:.3f} … {high:.3f} % of critical{_of_laws(runs)}"
     if high < 100:
         delta = log_decrement(torch.tensor([low, high]) / 100)
         line += f", log-decrement {delta[0]:.4f} … {delta[1]:.4f}"
@@ -70,8 +73,19 @@ def _damping(runs: Runs, law: str | None) -> str:
     if alpha is not None:
         exponent = float(runs.values[f"{law}.exponent"][0])
         line += f", alpha {_shown(float(alpha.min()))} … {_shown(float(alpha.max()))}{_unit_of_law(runs, exponent)}"
-    amplitude = quantity(float(runs.reference_velocity[0]), runs.model.system.unit_of("m/s"))
-    return f"{line}, at a velocity amplitude of {amplitude}{_other_start(runs)}"
+    return f"{line}, at {_velocity(runs)}{_other_start(runs)}"
+
+
+def _of_laws(runs: Runs) -> str:
+    """What each law adds to the ratio, in brackets; "" where there is one law."""
+    by_law = runs.damping_ratio_by_law
+    parts = [f"{name} {float(one.min()):.3f} … {float(one.max()):.3f}" for name, one in by_law.items()]
+    return f" ({', '.join(parts)})" if len(parts) > 1 else ""
+
+
+def _velocity(runs: Runs) -> str:
+    """The amplitude that ratios are stated at, in words."""
+    return f"a velocity amplitude of {quantity(float(runs.reference_velocity[0]), runs.model.system.unit_of('m/s'))}"
 
 
 def _other_start(runs: Runs) -> str:

@@ -78,6 +78,13 @@ def test_hysteresis_too_stiff_to_be_summed_has_no_figure():
     assert np.isnan(found("hysteretic_damping", {"share": 0.5, "yield_deflection": 1e-9}, (2.0,))[0])
 
 
+def test_a_member_that_is_too_stiff_to_be_summed_leaves_the_others_their_figure():
+    given = {"share": 0.5, "yield_deflection": 1e-4, "exponent": 1.0}
+    slow, fast = found("hysteretic_damping", given, (2.0, 2e5))
+    assert np.isnan(fast)
+    assert slow == pytest.approx(found("hysteretic_damping", given, (2.0,))[0], rel=1e-9)
+
+
 def test_gears_move_about_the_deflection_of_their_load():
     effects = [effect_class(name)() for name in ("fourier_mesh_stiffness", "hunt_crossley_damping")]
     given = {"damping_coefficient": 50.0, "exponent": 1.0, "reference_deflection": 1e-5}

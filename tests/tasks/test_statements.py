@@ -48,11 +48,32 @@ def test_a_gear_without_load_has_no_multiplier(simulate):
     assert "Floquet" not in text
 
 
-@pytest.mark.parametrize("effect", [None, "simulator.coulomb_friction={}"])
-def test_without_a_damping_law_no_ratio_is_stated(effect, simulate, tmp_path):
-    text = simulate(*UNDRIVEN, *NO_LAW, *([effect] if effect else []))
-    assert "no effect of the model states a damping ratio" in text
+def test_without_a_damping_law_no_ratio_is_stated(simulate, tmp_path):
+    text = simulate(*UNDRIVEN, *NO_LAW)
+    assert "no damping ratio is stated: the model has no damping law" in text
     assert "% of critical" not in text
+    assert np.isnan(ratio_of(tmp_path)).all()
+
+
+def test_dry_friction_alone_counts_with_what_it_takes(simulate, tmp_path):
+    stiff = ["simulator.stiffness=1e4", "simulator.amplitude=0.01"]  # 1 m/s at the reference amplitude
+    text = simulate(*UNDRIVEN, *NO_LAW, *stiff, "simulator.coulomb_friction.force=5")
+    expected = 100 * 4 * 5 / np.pi / (2 * 100)  # c_eq = 4 F / (pi V) over 2 sqrt(k m)
+    np.testing.assert_allclose(ratio_of(tmp_path), expected, rtol=2e-3)
+    assert "damping ratio 3.18" in text
+    assert "(coulomb_friction" not in text
+
+
+def test_several_laws_are_told_apart(simulate):
+    stiff = ["simulator.stiffness=1e4", "simulator.amplitude=0.01", "simulator.viscous_damping.damping_coefficient=2"]
+    text = simulate(*UNDRIVEN, *stiff, "simulator.coulomb_friction.force=5")
+    assert "damping ratio 4.180 … 4.180 % of critical (viscous_damping 1.000 … 1.000, coulomb_friction 3.180" in text
+
+
+def test_a_law_without_a_ratio_is_named(simulate, tmp_path):
+    small = ["simulator.stiffness=1e4", "simulator.hysteretic_damping.yield_deflection=1e-6"]
+    text = simulate(*UNDRIVEN, *small, "simulator.initial_displacement=1e-6", "simulator.amplitude=1")
+    assert "no damping ratio can be stated: hysteretic_damping has none that could be worked out at" in text
     assert np.isnan(ratio_of(tmp_path)).all()
 
 
