@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cache
 from math import pi
+from unicodedata import normalize
 
 from gear_damping.errors import InputError, Problem
 
@@ -109,6 +110,11 @@ _ALSO = {
     "radian": "rad", "radians": "rad", "RAD": "rad", "Rad": "rad",
     "sek": "s", "Sek": "s", "Sekunde": "s", "Sekunden": "s", "seconde": "s", "secondes": "s", "segundos": "s",
     "turn": "rev", "turns": "rev", "revs": "rev", "nsec": "ns", "days": "day", "kp": "kgf",
+    "millimeter": "mm", "millimeters": "mm", "millimetre": "mm", "millimetres": "mm", "Millimeter": "mm",
+    "micrometer": "um", "micrometers": "um", "micrometre": "um", "micrometres": "um", "Mikrometer": "um",
+    "centimeter": "cm", "centimeters": "cm", "centimetre": "cm", "centimetres": "cm", "Zentimeter": "cm",
+    "nanometer": "nm", "nanometers": "nm", "nanometre": "nm", "nanometres": "nm", "Nanometer": "nm",
+    "millivolt": "mV", "millivolts": "mV", "Millivolt": "mV", "kilonewton": "kN", "Kilonewton": "kN",
     "dps": "deg/s", "rps": "rev/s", "Meter": "m", "meter": "m", "meters": "m", "metre": "m", "metres": "m",
     "min-1": "1/min", "/min": "1/min", "r/min": "rpm", "tr/min": "rpm",
     "hertz": "Hz", "Hertz": "Hz", "kilohertz": "kHz", "S/s": "Hz", "kS/s": "kHz", "MS/s": "MHz",
@@ -120,8 +126,9 @@ _ALSO = {
 _DIGITS = r"\s*(?P<number>[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)\s*"
 _NUMBER, _SPOKEN = re.compile(f"^{_DIGITS}$"), re.compile(rf"^{_DIGITS}(?P<unit>([A-Za-zµμ°%]|(?<=\s)1/).*?)\s*$")
 _STEP = re.compile(
-    r"^(?P<number>\d+[.,]?\d*(e[+-]?\d+|\^[+-]?\d+)?)(/(?P<over>\d+))?\s*[*x·]?\s*(?P<unit>[A-Za-zµμ°].*)$"
+    r"^(?:[x×*·]\s*(?=10?[\^e]|10+\b))?(?P<number>\d+[.,]?\d*(e[+-]?\d+|\^[+-]?\d+)?)(/(?P<over>\d+))?\s*[*x·]?\s*(?P<unit>[A-Za-zµμ°].*)$"
 )
+_SUPERSCRIPT = re.compile(r"(?<=10)⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+")  # the power in `10⁻³ m`
 _SCALED = re.compile(
     r"^(?P<unit>[A-Za-zµμ°][^*x×·]*?)\s*[*x×·/]\s*\d+[.,]?\d*(e[+-]?\d+|\^?[+\-−]\d+|\^\d+|[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?$"
 )
@@ -174,8 +181,10 @@ def is_of_kind(text: str | None, plain: str) -> bool:
 
 
 def multiple_of_a_unit(text: str) -> tuple[float, Unit] | None:
-    """The number and the unit of a step that a header counts in: `0.1 mm`, `1/100 mm`, `10^-3 mm`; None of others."""
-    match = _STEP.match(text.strip())
+    """The number and the unit of a step that a header counts in: `0.1 mm`, `1/100 mm`, `x10^-3 mm`; None of others."""
+    match = _STEP.match(
+        _SUPERSCRIPT.sub(lambda power: "^" + normalize("NFKC", power[0]).replace("−", "-"), text.strip())
+    )
     if match is None:
         return None
     number, over = match["number"].replace(",", "."), float(match["over"] or 1)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.angular_error import GEOMETRY, NEEDED, base_radius, is_angular_acceleration, turn_in
+from gear_damping.measurement.angular_error import GEOMETRY, NEEDED, base_radius, turn_in
 from gear_damping.measurement.cutting import is_faster, moved
 from gear_damping.measurement.declaration import ChannelPlan, Plan
 from gear_damping.measurement.declared_units import Conversion, UnitSystem, written
@@ -18,18 +18,17 @@ from gear_damping.measurement.encoders import (
 )
 from gear_damping.measurement.gaps import borne_out
 from gear_damping.measurement.held_together import check_together
-from gear_damping.measurement.named_units import gravity_at_end, unit_at_end
-from gear_damping.measurement.raw import SAME_UNIT, RawChannel, RawRecord
+from gear_damping.measurement.raw import RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
 from gear_damping.measurement.record_checks import check_record
 from gear_damping.measurement.resolution import rounding_of
 from gear_damping.measurement.shaft_checks import mesh_beyond_band, other_side, tooth_ratio
 from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.timebase import TimeBase
+from gear_damping.measurement.unit_conflicts import unit_conflict
 from gear_damping.measurement.vocabulary import HOLDABLE, SHAFT_SPEEDS
 from gear_damping.measurement.wraps import begins_again, run_over, unwrapped
 from gear_damping.schema.values import Problems
-from gear_damping.units import Unit, multiple_of_a_unit, of_a_shaft, parse_unit, scaled_unit
 
 LOST = 0.1  # of a channel's variance, from which it is said that resampling took it
 ALL = 0.9  # of it, above which what is left is no motion
@@ -86,7 +85,7 @@ class Assembler:
     def _channel(self, raw: RawChannel, record: RawRecord, notes: list[str], findings: list[Finding]) -> Channel:
         plan = raw.plan
         conversion = self._conversion(plan, raw.unit, f"{plan.key}.unit")
-        findings += [found for found in (_unit_conflict(raw, record, conversion), _scale_beside(raw, record)) if found]
+        findings += [found for found in (unit_conflict(raw, record, conversion), _scale_beside(raw, record)) if found]
         limits = {
             name: quantity.value * self._conversion(plan, quantity.unit, f"{plan.key}.{name}", written(quantity)).factor
             for name, quantity in plan.limits.items()
@@ -325,56 +324,6 @@ def _folded_back(name: str, shaft: ShaftAngle, base: TimeBase) -> list[str]:
     ]
 
 
-def _step_conflict(raw: RawChannel, said: str, number: float, unit: Unit) -> Finding | None:
-    """The header counts in steps of a unit, `[0.1 mm]`, and the YAML in whole ones."""
-    stated = parse_unit(said)
-    gain = stated.factor / (number * unit.factor)
-    if unit.dimension != stated.dimension or abs(gain - 1) < SAME_UNIT:
-        return None
-    message = f"the header of column '{raw.plan.column}' says '{raw.header_unit}' and the YAML '{said}', "
-    message += (
-        f"which was used; write gain: {gain:.6g}, by which values are divided, or gain: 1 where they are in {said}"
-    )
-    return Finding("unit_conflict", message, channel=raw.plan.name)
-
-
-def _factor_unsaid(raw: RawChannel, said: str) -> Finding:
-    """The header has a factor behind its unit, `[mm*10]`, and the YAML none."""
-    message = (
-        f"the header of column '{raw.plan.column}' says '{raw.header_unit}' and the YAML '{said}', which was used; "
-        f"write gain: what the column holds for one {said}, which is the factor or one over it, or gain: 1 where there "
-        "is none"
-    )
-    return Finding("unit_conflict", message, channel=raw.plan.name)
-
-
-def _name_conflict(raw: RawChannel, name: str, said: str, stated: Unit) -> Finding | None:
-    """The name of the column ends in a smaller or larger unit than that of the YAML, `x_um`."""
-    named = unit_at_end(name)
-    if named is None and gravity_at_end(name):
-        return _may_be_gravity(raw, name, said, stated)
-    own = None if named is None else of_a_shaft(parse_unit(named), stated)
-    if own is None or own.dimension != stated.dimension or abs(own.factor / stated.factor - 1) < SAME_UNIT:
-        return None
-    message = (
-        f"column '{name}' is named like one in {named} and the YAML says '{said}', which was used; correct "
-        "the one that is wrong, or write gain: 1 where it is the name"
-    )
-    return Finding("unit_conflict", message, channel=raw.plan.name)
-
-
-def _may_be_gravity(raw: RawChannel, name: str, said: str, stated: Unit) -> Finding | None:
-    """The name of an acceleration ends in a `g`, which may as well stand for the gear or the ground."""
-    gravity = parse_unit("g")
-    if gravity.dimension != stated.dimension or gravity.factor == stated.factor:
-        return None
-    message = (
-        f"column '{name}' ends in g and the YAML says '{said}', which was used; write unit: g where it is in that, or "
-        "gain: 1 where the name means something else"
-    )
-    return Finding("unit_conflict", message, channel=raw.plan.name, severity="note")
-
-
 def _scale_beside(raw: RawChannel, record: RawRecord) -> Finding | None:
     """A factor or a zero that the file states beside the column, where the YAML says nothing of a gain."""
     table = record.table
@@ -387,37 +336,3 @@ def _scale_beside(raw: RawChannel, record: RawRecord) -> Finding | None:
         "where it is a factor that multiplies them, write gain: one over it, and gain: 1 where they are right so"
     )
     return Finding("not_applied", message, channel=raw.plan.name, severity="note")
-
-
-def _unit_conflict(raw: RawChannel, record: RawRecord, conversion: Conversion) -> Finding | None:
-    """The header names a unit and the YAML another one."""
-    said = raw.plan.stated_unit or raw.unit
-    stated = parse_unit(said)
-    if raw.header_unit is None:
-        name = record.table.names[record.table.index(raw.plan.column, raw.plan.key)]
-        return None if raw.plan.is_scaled else _name_conflict(raw, name, said, stated)
-    if raw.header_unit == said:
-        return None
-    if step := multiple_of_a_unit(raw.header_unit):
-        return None if raw.plan.is_scaled else _step_conflict(raw, said, *step)
-    if scaled_unit(raw.header_unit):
-        return None if raw.plan.is_scaled else _factor_unsaid(raw, said)
-    try:
-        header = of_a_shaft(parse_unit(raw.header_unit), stated)
-    except InputError:
-        return None  # brackets that hold no unit
-    is_other = header.dimension != stated.dimension
-    if is_other and raw.plan.is_scaled:
-        return None  # a gain of another kind lies between: volts in the file, what they stand for in the YAML
-    if is_other and header.dimension == parse_unit("kg").dimension and stated.dimension == parse_unit("N").dimension:
-        header, is_other = parse_unit(raw.header_unit.replace("kg", "kgf")), False  # as load cells say it
-    if (header.dimension, header.factor) == (stated.dimension, stated.factor):
-        return None
-    kept = "rad/s^2" if is_angular_acceleration(said) else conversion.unit
-    message = (
-        f"the header of column '{raw.plan.column}' says '{raw.header_unit}' and the YAML '{said}', "
-        f"which was used to read {raw.plan.name} in {kept}; correct the one that is wrong"
-    )
-    if is_other:
-        message += f", or write gain: what the column holds for one {said} (1 where its header names something else)"
-    return Finding("unit_conflict", message, channel=raw.plan.name)

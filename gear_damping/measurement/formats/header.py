@@ -5,18 +5,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from gear_damping.errors import InputError
+from gear_damping.measurement.formats.bracket_words import unit_said
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written
 from gear_damping.measurement.named_units import compound_at_end
 from gear_damping.measurement.time_column import NAMED, is_time
 from gear_damping.units import multiple_of_a_unit, parse_unit, scaled_unit
 
 _BRACKETS = re.compile(r"[(\[]([^()\[\]]+)[)\]]\s*(?:run\s*#?\s*\d+\s*)?$", re.I)  # `Angle (rad) Run #2`, too
-_WITHIN = re.compile(r"[(\[]([^()\[\]]+)[)\]]")  # `Position (cm) Monitor Run`, where that is a unit
+_WITHIN = re.compile(  # `Position (cm) Monitor Run`, `x {mm}`, where that is a unit, and no index as in `F_{N}`
+    r"(?:[(\[]|(?<![_^])[{<])([^()\[\]{}<>]+)[)\]}>]"
+)
 _SLASH = re.compile(r"^[^/]+/\s*([^\W\d_][^\s]*|[°%µ][^\s]*)$")  # `Weg/mm`, as DIN 461 has it
 _ARGUMENT = re.compile(r"^\W*[^\W\d]\w?\s*\((t|k|n)\)\s*$")  # `x(t)`, `F_(t)`: what it is over, and no unit
 _FACTOR_BEHIND = re.compile(
     r"[(\[](?P<unit>[^()\[\]]+)[)\]]\s*(?P<factor>[*x×·/]\s*\d[\d.,eE^+\-]*)\s*$"
 )  # `x [mm]*1000`
+_FACTOR_WITHIN = re.compile(  # `x*1000 [mm]`; of a stroke or a letter powers of ten alone: `CH x2 [V]` is a channel
+    r"(?P<factor>[*×·]\s*\d[\d.,eE^+\-]*|(?:/\s*|\sx\s?)10+)\s*[(\[](?P<unit>[^()\[\]]+)[)\]]\s*$"
+)
 _FACTOR_BEFORE = re.compile(r"^(?P<factor>\d[\d.,eE^+\-]*)\s*[*×·]\s*[^\W\d].*[(\[](?P<unit>[^()\[\]]+)[)\]]\s*$")
 _IN_STEPS = re.compile(r"\s(?:in|/)\s+(\d[\d.,/]*\s*[A-Za-zµμ°][\w/^]*)\s*$")  # `x in 0.1mm`
 _IN = re.compile(r"(?:^|\s)in\s+([^\W\d]\S*|[°%µ]\S*)\s*$")  # `C1 in V`, as oscilloscopes of Rohde & Schwarz have it
@@ -145,7 +151,7 @@ def _of_two_rows(upper: list[str], lower: list[str], first: int) -> Header | Non
     Where the upper one is generic, `Analog 1`, the lower one names the column if no other bears that name.
     """
     said = [cell.strip("[]() ") for cell in lower]
-    units = [one if _is_unit(one) else "" for one in said]
+    units = [one if _is_unit(one) or multiple_of_a_unit(one) else "" for one in said]
     by_time = [is_time(unit) for name, unit in zip(upper, units, strict=True) if unit and NAMED.search(name)]
     if not any(by_time) or is_units(lower):
         return None
@@ -216,24 +222,32 @@ def bracket_unit(name: str) -> str | None:
     """
     if _INDEX.search(name) or _ARGUMENT.match(name):
         return None
-    for pattern in (_FACTOR_BEHIND, _FACTOR_BEFORE):
+    for pattern in (_FACTOR_BEHIND, _FACTOR_WITHIN, _FACTOR_BEFORE):
         if (scaled := pattern.search(name)) and _is_unit(scaled["unit"].strip()):
             return f"{scaled['unit'].strip()}*{scaled['factor'].lstrip('*x×· ')}".replace("*/", "/")
     if (step := _IN_STEPS.search(name)) and multiple_of_a_unit(step[1]):
         return step[1]
     found = _BRACKETS.search(name)
-    if found is not None:
-        return found[1].strip()
+    if found is not None and (said := unit_said(found[1])):
+        return said
     within = [one.strip() for one in _WITHIN.findall(name)]
-    units = [one for one in within if not is_number(one) and _is_unit(one)]
+    units = [said for one in within if not is_number(one) and (said := unit_said(one))]
     if len(units) == 1:
         return units[0]
+    if found is not None:
+        return found[1].strip()
     if (said := _IN.search(name)) and _is_unit(said[1]):
         return said[1]
     if compound := compound_at_end(name):
         return compound
     behind = _SLASH.search(name.strip())
     return behind[1] if behind is not None and (_is_unit(behind[1]) or scaled_unit(behind[1])) else None
+
+
+def is_among_words(name: str, unit: str) -> bool:
+    """Whether the unit of a column stands beside other words in the brackets of its name, `(mm, LP 1kHz)`."""
+    within = [one.strip() for one in _WITHIN.findall(name)]
+    return unit not in within and any(unit_said(one) == unit for one in within)
 
 
 def _has_number(row: Sequence[str]) -> bool:

@@ -1,0 +1,112 @@
+"""What the header or the name of a column says of its unit, against the one that was declared."""
+
+from gear_damping.errors import InputError
+from gear_damping.measurement.angular_error import is_angular_acceleration
+from gear_damping.measurement.declared_units import Conversion
+from gear_damping.measurement.formats.bracket_words import unit_of_its_kind
+from gear_damping.measurement.formats.header import is_among_words
+from gear_damping.measurement.named_units import gravity_at_end, unit_at_end
+from gear_damping.measurement.raw import SAME_UNIT, RawChannel, RawRecord
+from gear_damping.measurement.record import Finding
+from gear_damping.units import Unit, multiple_of_a_unit, of_a_shaft, parse_unit, scaled_unit
+
+
+def unit_conflict(raw: RawChannel, record: RawRecord, conversion: Conversion) -> Finding | None:
+    """The header names a unit and the YAML another one."""
+    said = raw.plan.stated_unit or raw.unit
+    stated = parse_unit(said)
+    name = record.table.names[record.table.index(raw.plan.column, raw.plan.key)]
+    if raw.header_unit is None:
+        return None if raw.plan.is_scaled else _name_conflict(raw, name, said, stated)
+    if raw.header_unit == said:
+        return None
+    if step := multiple_of_a_unit(raw.header_unit):
+        return None if raw.plan.is_scaled else _step_conflict(raw, said, *step)
+    if scaled_unit(raw.header_unit):
+        return None if raw.plan.is_scaled else _factor_unsaid(raw, said)
+    try:
+        header = of_a_shaft(parse_unit(raw.header_unit), stated)
+    except InputError:
+        return None if raw.plan.is_scaled else _among_words(raw, said, stated)
+    is_other = header.dimension != stated.dimension
+    if is_other and raw.plan.is_scaled:
+        return None  # a gain of another kind lies between: volts in the file, what they stand for in the YAML
+    if is_other and header.dimension == parse_unit("kg").dimension and stated.dimension == parse_unit("N").dimension:
+        header, is_other = parse_unit(raw.header_unit.replace("kg", "kgf")), False  # as load cells say it
+    if (header.dimension, header.factor) == (stated.dimension, stated.factor):
+        return None
+    has_words = is_among_words(name, raw.header_unit)
+    if has_words and raw.plan.is_scaled:
+        return None
+    kept = "rad/s^2" if is_angular_acceleration(said) else conversion.unit
+    message = (
+        f"the header of column '{raw.plan.column}' says '{raw.header_unit}' and the YAML '{said}', "
+        f"which was used to read {raw.plan.name} in {kept}; correct the one that is wrong"
+    )
+    if is_other:
+        message += f", or write gain: what the column holds for one {said} (1 where its header names something else)"
+    elif has_words:
+        message += f", or write gain: 1 where '{raw.header_unit}' in the header is not its unit"
+    return Finding("unit_conflict", message, channel=raw.plan.name)
+
+
+def _step_conflict(raw: RawChannel, said: str, number: float, unit: Unit) -> Finding | None:
+    """The header counts in steps of a unit, `[0.1 mm]`, and the YAML in whole ones."""
+    stated = parse_unit(said)
+    gain = stated.factor / (number * unit.factor)
+    if unit.dimension != stated.dimension or abs(gain - 1) < SAME_UNIT:
+        return None
+    message = f"the header of column '{raw.plan.column}' says '{raw.header_unit}' and the YAML '{said}', "
+    message += (
+        f"which was used; write gain: {gain:.6g}, by which values are divided, or gain: 1 where they are in {said}"
+    )
+    return Finding("unit_conflict", message, channel=raw.plan.name)
+
+
+def _factor_unsaid(raw: RawChannel, said: str) -> Finding:
+    """The header has a factor behind its unit, `[mm*10]`, and the YAML none."""
+    message = (
+        f"the header of column '{raw.plan.column}' says '{raw.header_unit}' and the YAML '{said}', which was used; "
+        f"write gain: what the column holds for one {said}, which is the factor or one over it, or gain: 1 where there "
+        "is none"
+    )
+    return Finding("unit_conflict", message, channel=raw.plan.name)
+
+
+def _name_conflict(raw: RawChannel, name: str, said: str, stated: Unit) -> Finding | None:
+    """The name of the column ends in a smaller or larger unit than that of the YAML, `x_um`."""
+    named = unit_at_end(name)
+    if named is None and gravity_at_end(name):
+        return _may_be_gravity(raw, name, said, stated)
+    own = None if named is None else of_a_shaft(parse_unit(named), stated)
+    if own is None or own.dimension != stated.dimension or abs(own.factor / stated.factor - 1) < SAME_UNIT:
+        return None
+    message = (
+        f"column '{name}' is named like one in {named} and the YAML says '{said}', which was used; correct "
+        "the one that is wrong, or write gain: 1 where it is the name"
+    )
+    return Finding("unit_conflict", message, channel=raw.plan.name)
+
+
+def _may_be_gravity(raw: RawChannel, name: str, said: str, stated: Unit) -> Finding | None:
+    """The name of an acceleration ends in a `g`, which may as well stand for the gear or the ground."""
+    gravity = parse_unit("g")
+    if gravity.dimension != stated.dimension or gravity.factor == stated.factor:
+        return None
+    message = (
+        f"column '{name}' ends in g and the YAML says '{said}', which was used; write unit: g where it is in that, or "
+        "gain: 1 where the name means something else"
+    )
+    return Finding("unit_conflict", message, channel=raw.plan.name, severity="note")
+
+
+def _among_words(raw: RawChannel, said: str, stated: Unit) -> Finding | None:
+    """A word in the brackets of the header is a unit of the kind of the YAML's and another one, `left, mm`."""
+    word = unit_of_its_kind(raw.header_unit, said)
+    if word is None or parse_unit(word).factor == stated.factor:
+        return None
+    message = (
+        f"the header of column '{raw.plan.column}' says '{raw.header_unit}', where {word} may be the unit, and the "
+        f"YAML '{said}', which was used; correct the one that is wrong, or write gain: 1 where it is none"
+    )
+    return Finding("unit_conflict", message, channel=raw.plan.name)
