@@ -9,7 +9,7 @@ from gear_damping.measurement.formats.cells import unit_in
 from gear_damping.measurement.formats.header import Header, filled, find_header, is_units, known_header
 from gear_damping.measurement.formats.moments import is_told
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written
-from gear_damping.measurement.formats.text_lines import HEAD, Text
+from gear_damping.measurement.formats.text_lines import HEAD, ONE_COLUMN, Text
 
 _PREAMBLE, _BELOW = 20, 20  # rows that may be settings; rows of the table below them, at least
 _PLACE = "X_Value"  # LabVIEW's name of what the values are over,
@@ -44,6 +44,7 @@ def text_header(text: Text) -> tuple[Header, int]:
         len(header.names) == 1 < text.width
         or _is_setting(header.names, text.width)
         or (text.delimiter == " " and len(header.names) > text.width > 0)
+        or (text.delimiter == ONE_COLUMN and _sets_down(header))
     )
     if is_title:  # names in words would be as many as the columns
         first, says = _behind_a_note(rows, header.first, text.width)
@@ -79,7 +80,7 @@ def _without_units(rows: list[list[str]]) -> list[list[str]]:
 def _behind_a_note(rows: list[list[str]], first: int, width: int) -> tuple[int, str]:
     """The first row of a table behind a line of one number, which stands below a title, and what is noted of it."""
     table = rows[first + 1 : first + 1 + _BELOW]
-    if filled(rows[first]) != 1 or len(table) < _BELOW or not all(_is_body(row, width) for row in table):
+    if width == 1 or filled(rows[first]) != 1 or len(table) < _BELOW or not all(_is_body(row, width) for row in table):
         return first, ""
     if any(filled(row) != width for row in table):
         return first, ""
@@ -109,6 +110,11 @@ def _are_rows_numbered(rows: list[list[str]], width: int) -> bool:
 def _is_setting(names: tuple[str, ...], width: int) -> bool:
     """Whether a row of fewer cells than the table sets something down, `Trigger:` and what it is."""
     return 0 < len(names) < width and names[0].endswith((":", "="))
+
+
+def _sets_down(header: Header) -> bool:
+    """Whether what stands above one column is a setting, `fs = 1000 Hz`, and no name with a unit."""
+    return any(map(_LABELLED.search, header.names)) and header.unit(0) is None
 
 
 def without_other_headers(text: Text, first_line: int) -> int:

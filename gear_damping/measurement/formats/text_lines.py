@@ -10,12 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.errors import InputError, Problem, reading
+from gear_damping.measurement.formats.cells import unit_in
 from gear_damping.measurement.formats.number_texts import are_decimals_alone, is_written
 from gear_damping.measurement.formats.table import refuse_size, unreadable
 
 HEAD = 100  # rows among which the header is looked for
 ENDING = 2**16  # bytes of the end of a file by which the sign between its cells is found: some thousand rows
 _DELIMITERS = (";", "\t", "|", ",")  # in the order in which they are taken for it; blanks where none stands
+ONE_COLUMN = "\x1f"  # the unit separator of ASCII, which no line holds: blanks part words of a name there, no cells
 _ALONE = 80  # last lines that are asked whether they hold a number each
 _NUMBER, IS_COMMENT = re.compile(r"\d"), re.compile(r"\s*(#|%|//)")
 BEGINS = re.compile(r"^[\s;,|\"(]*[+-]?[.,]?\d")  # a line of values, which headers and remarks seldom look like
@@ -68,6 +70,8 @@ class Text:
         self.delimiter = _sign_of(last)
         if self.delimiter == ",":
             self.delimiter = _beside_decimal_commas(kept[-HEAD:], last)
+        if self.delimiter == " " and _are_alone(kept):
+            self.delimiter = ONE_COLUMN
         if self.delimiter == "|" and last.lstrip().startswith("|"):
             self.utf8, last = _RULED.sub(b"", self.utf8), _RULED.sub(b"", last.encode()).decode()
         self.width = max((k + 1 for k, cell in enumerate(next(self._cells([last]), [])) if cell.strip()), default=0)
@@ -114,6 +118,12 @@ def _is_alone(line: str) -> bool:
     return _sign_of(line) == " " and " " not in line.strip()
 
 
+def _are_alone(lines: list[str]) -> bool:
+    """Whether the last lines that begin with a number have one cell each, perhaps with a unit behind a blank."""
+    values = [line.strip() for line in lines if BEGINS.match(line)][-_ALONE:]
+    return bool(values) and all(_is_alone(line) or unit_in(line) for line in values)
+
+
 def _typical(lines: list[str]) -> str:
     """The last of the lines that have the sign of most of those that begin with a number.
 
@@ -132,7 +142,7 @@ def _beside_decimal_commas(lines: list[str], last: str) -> str:
     numbers = last.split()
     if len(numbers) > 1 and all("," in one and is_written(one) for one in numbers):
         return " "
-    return ";" if are_decimals_alone(lines[-_ALONE:]) else ","  # a sign that is in no line: one column
+    return ONE_COLUMN if are_decimals_alone(lines[-_ALONE:]) else ","
 
 
 def _line_end(line: str) -> str:
