@@ -5,9 +5,9 @@ A check raises InputError with keys relative to the value ("" for the value itse
 
 import re
 from dataclasses import dataclass
-from math import inf
+from math import inf, isfinite
 from types import MappingProxyType as Frozen
-from typing import Any
+from typing import Any, NoReturn
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.measurement.record import Quantity
@@ -29,6 +29,7 @@ EACH_ITS_OWN = "make each file a record of its own, with the same channels"
 Found = list[Problem]
 _THOUSANDS = re.compile(r"^\s*([+-]?\d{1,3}(?:[, '’]\d{3})+)\s*([A-Za-z%µμ°].*?)?\s*$")  # `1,000 Hz`, `1 000 Hz`
 _BARE = re.compile(r"^\s*[+-]?\d+(\.\d+)?\s*$")
+_NOT_FINITE = re.compile(r"^\s*[+-]?\.?(inf|infinity|nan)\b", re.I)
 _DECIMAL_COMMA = re.compile(r"^\s*([+-]?\d+),(\d+([eE][+-]?\d+)?\s*\D.*?)\s*$")
 _BOTH_SIGNS = re.compile(r"^\s*(?:±|\+/?-)\s*(\S.*?)\s*$")  # `±50 mm`, `+-50 mm`
 _ELECTRIC = ("V", "A")  # in which columns of sensors usually are
@@ -191,7 +192,7 @@ class Measured(Value):
         if is_number and value == 0 and self.unit not in (None, "own"):  # nothing is nothing in every unit
             value = {"value": value, "unit": self.unit}
         if not isinstance(value, dict):
-            refuse("needs a value and a unit", value, self._remedy(value if is_number else None, value, name))
+            self._refuse_without_unit(value, name)
         problems = self._unknown(value)
         number = self._part(value, "value", Number(), None, problems)
         unit = self._unit(value, problems)
@@ -200,6 +201,15 @@ class Measured(Value):
         if problems:
             raise InputError(problems)
         return self.made(self._checked(Quantity(number, unit, uncertainty)), more)
+
+    def _refuse_without_unit(self, value: Any, name: str) -> NoReturn:
+        """Say what is wrong with a value that is no mapping; of a number that no unit would help, that first."""
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        if (is_number and not isfinite(value)) or (isinstance(value, str) and _NOT_FINITE.match(value)):
+            refuse("must be a finite number, and needs a unit", value, self._remedy(None, None, name))
+        if is_number:
+            self._refuse_sign(value, self._remedy(None, value, name))
+        refuse("needs a value and a unit", value, self._remedy(value if is_number else None, value, name))
 
     def more(self, value: dict, problems: Found) -> Any:
         """What else the mapping holds."""
@@ -274,12 +284,7 @@ class Measured(Value):
 
     def _checked(self, found: Quantity) -> Quantity:
         number = found.value
-        if self.sign == "positive" and not number > 0:
-            refuse("must be positive", number, self.excluded)
-        if self.sign == "not negative" and number < 0:
-            refuse("must not be negative", number, self.excluded)
-        if self.sign == "not zero" and number == 0:
-            refuse("must not be 0", number, self.excluded)
+        self._refuse_sign(number)
         if found.uncertainty and number == 0:
             rule = "an uncertainty is relative, and there is nothing to relate it to where the value is 0"
             remedy = "state a small value, as 0.1 with an uncertainty of 5000 % for 0.1 +- 5"
@@ -289,6 +294,16 @@ class Measured(Value):
                 parse_unit(found.unit, "unit")
             return found
         return self._in_range(Quantity(to_si(number, found.unit, self.unit, ""), self.unit, found.uncertainty), found)
+
+    def _refuse_sign(self, number: float, otherwise: str = "") -> None:
+        """Refuse a number of a sign that it must not have, with a remedy where none is known of its own."""
+        remedy = self.excluded or otherwise
+        if self.sign == "positive" and not number > 0:
+            refuse("must be positive", number, remedy)
+        if self.sign == "not negative" and number < 0:
+            refuse("must not be negative", number, remedy)
+        if self.sign == "not zero" and number == 0:
+            refuse("must not be 0", number, remedy)
 
     def _in_range(self, quantity: Quantity, found: Quantity) -> Quantity:
         """The quantity in SI, refused where it is no count or nothing that a rig has."""

@@ -59,8 +59,9 @@ def test_the_ratio_of_a_gear_pair_is_that_of_its_teeth(tmp_path):
     assert str(teeth).startswith("parameters.n_teeth_pinion = 1: lies outside 5 to 500")
 
 
-def test_a_spring_that_pushes_away_is_outside_of_an_oscillator(tmp_path):
-    (problem,) = problems_of(tmp_path, {"stiffness": {"value": -100, "unit": "1/s^2"}})
+@pytest.mark.parametrize("said", [{"value": -100, "unit": "1/s^2"}, "-100 1/s^2", -100])
+def test_a_spring_that_pushes_away_is_outside_of_an_oscillator(said, tmp_path):
+    (problem,) = problems_of(tmp_path, {"stiffness": said})
     assert problem.rule == "must not be negative"
     assert "a spring that pulls back" in problem.remedy
     assert "leave the key out" in problem.remedy
