@@ -73,6 +73,27 @@ def test_older_encodings_are_read(tmp_path):
     assert _csv(tmp_path, "t,x (µm)\n0,1\n", "utf-16").unit(1) == "µm"
 
 
+@pytest.mark.parametrize("code", ["utf-16-le", "utf-16-be"])
+@pytest.mark.parametrize("name", ["x", "変位センサの値"])
+def test_utf_16_needs_no_mark_of_its_order(code, name, tmp_path):
+    table = _csv(tmp_path, f"Time (s);{name} (µm)\n" + "".join(f"{k};{k / 8}\n" for k in range(9)), code)
+    assert table.names == ("Time (s)", f"{name} (µm)")
+    assert table.unit(1) == "µm"
+    np.testing.assert_allclose(table.values(1), np.arange(9) / 8)
+
+
+def test_a_wide_text_that_was_cut_within_a_letter_is_read(tmp_path):
+    text = "t;x\n" + "".join(f"{k};{k / 8}\n" for k in range(9)) + " "
+    (tmp_path / "a.csv").write_bytes(text.encode("utf-16-le")[:-1])
+    np.testing.assert_allclose(read_table(tmp_path / "a.csv").values(1), np.arange(9) / 8)
+
+
+def test_binary_numbers_of_two_bytes_are_no_text(tmp_path):
+    (tmp_path / "a.csv").write_bytes(np.arange(1, 200, dtype="<i2").tobytes())
+    with pytest.raises(InputError, match="not a text file"):
+        read_table(tmp_path / "a.csv")
+
+
 def test_a_file_without_header_is_read_by_index(tmp_path):
     table = _csv(tmp_path, "0,1\n1,2\n")
     assert _column(table, 1) == [1, 2]

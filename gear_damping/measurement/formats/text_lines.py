@@ -34,6 +34,9 @@ _MATRIX = re.compile(
 )
 _HIGH = re.compile(rb"[\x80-\xff]")  # a byte of no English letter
 _LETTERS = re.compile(rb"(?:[\x81-\x9f][\x40-\x7e\x80-\xfc]){2,}")  # signs, kana and most kanji of Shift-JIS
+_CODED = 4096  # bytes by which the code of a text is seen, an even number
+_NO_LETTER = re.compile(rb"[\0-\x08\x0e-\x19\x1b-\x1f]")  # what no text holds, and binary numbers do
+_OF_WIDE = 0.5  # of the high bytes of letters of two: as few may be zero where names are long and of no English letters
 _ARROW, _LONG = (
     re.compile(rb"^(\d{1,2}:\d{2}:\d{2}\.\d+) -> ", re.MULTILINE),
     1000,
@@ -166,15 +169,33 @@ def bytes_of(path: Path, max_bytes: int) -> bytes:
 
 def _utf8(path: Path, raw: bytes) -> bytes:
     """The text in UTF-8; older programs write µ, ° and ² in the code page of Windows, and Japanese in Shift-JIS."""
-    wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
+    wide = "utf-16" if raw.startswith((b"\xff\xfe", b"\xfe\xff")) else _wide_without_a_mark(raw)
     if b"\0" in raw.rstrip(b"\0")[:4096] and not wide:
         packed = path.suffix.lower() == ".gz"
         remedy = "unpack it: of what gzip packs only text is read" if packed else "export it as CSV"
         raise InputError(Problem("file", "not a text file", str(path), remedy))
     try:
-        return raw.decode("utf-16").encode() if wide else raw.removeprefix(b"\xef\xbb\xbf").decode().encode()
+        return (
+            raw[: len(raw) // 2 * 2].decode(wide).encode()
+            if wide
+            else raw.removeprefix(b"\xef\xbb\xbf").decode().encode()
+        )
     except UnicodeDecodeError:
         return raw.decode("cp932" if _is_shift_jis(raw) else "cp1252", "replace").encode()
+
+
+def _wide_without_a_mark(raw: bytes) -> str:
+    """The code of a text of two bytes a letter that does not say their order; "" of any other.
+
+    Numbers and the signs between them have a zero in one of the two and none in the other.
+    """
+    head = raw[:_CODED]
+    for high, code in enumerate(("utf-16-be", "utf-16-le")):
+        upper, lower = head[high::2], head[1 - high :: 2]
+        letters = [low for up, low in zip(upper, lower, strict=False) if up == 0]
+        if len(letters) > _OF_WIDE * len(lower) and not _NO_LETTER.search(bytes(letters)):
+            return code
+    return ""
 
 
 def _is_shift_jis(raw: bytes) -> bool:
