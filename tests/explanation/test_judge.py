@@ -101,6 +101,15 @@ def test_of_a_signal_no_more_can_be_missing_than_all_of_it(left, word):
     assert verdict(found, excess_of(67500.0, 1e6), excess_of(left, 1e4), is_one=True).word == word
 
 
+@pytest.mark.parametrize(
+    ("is_one", "at_bound", "word"), [(False, True, UNEXPLAINED), (None, True, EXPLAINED), (False, False, EXPLAINED)]
+)
+def test_what_bends_to_each_record_as_far_as_it_can_is_none(is_one, at_bound, word):
+    """A motor's friction in two directions took a low-pass of 1e-6 to .83 Hz, of .31 to .70 Hz by record."""
+    found = search(accepted=(cause(at_bound=at_bound),), left=False)
+    assert verdict(found, MUCH, excess_of(0.01, 1.05), is_one=is_one).word == word
+
+
 def test_a_cause_of_other_sizes_beside_something_visible_is_a_part():
     """Nearly all is taken, but not by one size in all records, and what is left is not all random."""
     sizes = {True: EXPLAINED, False: PARTLY, None: EXPLAINED}

@@ -16,6 +16,7 @@ from gear_damping.explanation.model.calibration_error import calibration_error
 from gear_damping.explanation.model.homogeneity import homogeneity
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.opened import opened
+from gear_damping.explanation.model.own_marks import with_own_marks
 from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.statistics.paired import confirmation
 from gear_damping.explanation.trials.refit import block_samples
@@ -58,6 +59,7 @@ def confirmed(state: State, sealed: Sequence[FitRecord], measurement: Measuremen
         t = _t(state.nominal, state.outcome, state) if state.accepted else 0.0
         return Confirmed(state, state.noise, state.first, state.current, t)
     evidence, noise = _with_sealed(state, sealed, measurement)
+    evidence = with_own_marks(evidence, state.outcome, state.bench.solver)
     bench = replace(state.bench, evidence=evidence)
     nominal = opened(state.nominal, evidence, bench.solver)
     scatter = calibration_error(nominal, evidence, bench.solver)

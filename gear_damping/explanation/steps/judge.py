@@ -151,12 +151,15 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         return _not_established(found, before, known, why)
     if known.any_figures:
         return _not_established(found, before, known, NO_FIGURE.format(known.any_figures))
+    is_at_end = any(found.is_at_bound(cause) for cause in found.accepted)
+    if known.is_one is False and is_at_end:  # one that bends to each record, as far as it can
+        return _not_established(found, before, known, OTHER_SIZES)
     is_part = known.whole < settings.taken_by_one
     is_unsteady = before.misfit < settings.random_misfit  # held-out: less noise
     if is_part and is_unsteady:
         text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it; most of it looks random, and is not."
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
-    if (is_part or is_unsteady) and any(found.is_at_bound(cause) for cause in found.accepted):
+    if (is_part or is_unsteady) and is_at_end:
         return _not_established(found, before, known, AT_BOUND)
     if is_part and before.significant and before.percent - after.percent < settings.least_excess:
         return _not_established(found, before, known, NOT_LESS)

@@ -99,7 +99,7 @@ def _beside_the_others_at(state: State, place: int) -> State:
     if not rivals:
         return state.with_cause(place, replace(cause, confusable=()))
     if bench.budget.refuses(f"rivals of {cause.name} beside the others"):
-        return state
+        return state.with_cause(place, replace(cause, confusable=tuple(rivals)))
     without = bench.without(state.outcome, cause.name)
     best = best_by_effect(bench.ranked(without, rivals)).values()
     fits = [bench.full_fit(score, without) for score in best if score.gain > 0]

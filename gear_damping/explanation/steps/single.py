@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import inf
 
 from gear_damping.explanation.evidence.excess import is_settled
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
@@ -173,13 +174,19 @@ def _hidden_by_shape(scores: Sequence[Score]) -> set[str]:
 
 
 def _converged_rivals(fits: Sequence[Refit], state: State) -> tuple[Refit, ...]:
-    """The fits, the best ones carried to their ends: what has not converged is no rival yet, and no winner."""
+    """The fits, the best ones carried to their ends: what has not converged is no winner yet.
+
+    Under a preload another one is carried on only as long as it may get below the best: it is a rival where it stands,
+    too, and one of a hundred numbers, as an error of every tooth, creeps for minutes.
+    """
     best, bench = _best(fits, state), state.bench
     if best is None:
         return tuple(fits)
     against = state.outcome if state.accepted else state.nominal
     alike = [fit for fit in fits if fit is best or bench.is_as_good(fit.outcome, best.outcome)]
-    ends = [bench.converged(fit, against) if any(fit is one for one in alike) else fit for fit in fits]
+    reach = best.outcome.fitted.cost if bench.evidence.has(Trait.PRELOAD) else inf
+    goals = {id(fit): inf if fit is best else reach for fit in alike}
+    ends = [bench.converged(fit, against, goals[id(fit)]) if id(fit) in goals else fit for fit in fits]
     return tuple(sorted(ends, key=lambda fit: fit.outcome.left_out_cost))
 
 

@@ -20,7 +20,7 @@ from gear_damping.explanation.statistics.paired import confirmation, paired_gain
 from gear_damping.explanation.trials.assess import Assessment, assessed
 from gear_damping.explanation.trials.refit import Refit, block_samples, chosen, compared, refitted, with_later
 from gear_damping.explanation.trials.score import Score, Scoring, contains, scores
-from gear_damping.identification.output_error.least_squares import Fitted, Rounds
+from gear_damping.identification.output_error.least_squares import Ends, Fitted, Rounds
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 from gear_damping.physics.systems.traits import Trait
@@ -198,19 +198,19 @@ class Bench:
             self.fewer[key] = outcome.fitted, found
         return found
 
-    def until_converged(self, outcome: Outcome) -> Outcome:
-        """A model whose fit is carried on where it had not converged."""
+    def until_converged(self, outcome: Outcome, reach: float = inf) -> Outcome:
+        """A model whose fit is carried on where it had not converged; given up where it cannot reach a cost."""
         if outcome.fitted.converged:
             return outcome
         initial, rounds = InitialValues(after=outcome, is_near=True), Rounds(LAST_ITERATIONS)
-        further = fit_hypothesis(outcome.hypothesis, self.evidence, initial, rounds, solver=self.solver)
+        further = fit_hypothesis(outcome.hypothesis, self.evidence, initial, rounds, Ends(reach=reach), self.solver)
         return further if further.is_finite else outcome
 
-    def converged(self, fit: Refit, against: Outcome) -> Refit:
-        """A full fit carried on where it had not converged, and held against a model."""
+    def converged(self, fit: Refit, against: Outcome, reach: float = inf) -> Refit:
+        """A full fit carried on where it had not converged, and held against a model; `reach` as before."""
         if fit.outcome.fitted.converged:
             return fit
-        return compared(fit.score, self.until_converged(fit.outcome), against, self.evidence)
+        return compared(fit.score, self.until_converged(fit.outcome, reach), against, self.evidence)
 
     def joined(self, fit: Refit, candidate: Candidate, against: Outcome) -> Refit:
         """A full fit carried on with what joins later of another candidate in it, and held against a model."""
@@ -260,6 +260,7 @@ class Bench:
         not visible beside it, is none (Davidson & MacKinnon 1981, Econometrica 49).
         """
         alike = [f for f in fits if f is best or (f.is_seen_in_fit and self._is_rival(f, best))]
+        alike = _one_a_size(alike, best)
         inner = [f for f in alike if any(contains(o.score, f.score) for o in alike if o.name != f.name)]
         outer = {f.name for f in alike if any(contains(f.score, o.score) for o in inner if o.name != f.name)}
         kept = self._not_encompassed(best, [f for f in alike if f.name not in outer] or alike)
@@ -341,6 +342,18 @@ class Bench:
 def smallest(fits: Sequence[Refit]) -> Refit:
     """The fit with the fewest parameters; of several the one that leaves least."""
     return min(fits, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.left_out_cost))
+
+
+def _one_a_size(fits: Sequence[Refit], best: Refit) -> list[Refit]:
+    """Of the forms of an effect with as many parameters the one that leaves least; of the best one's that one."""
+
+    def size(fit: Refit) -> tuple[str, int]:
+        return fit.name, len(fit.outcome.hypothesis.free)
+
+    kept = {size(best): best}
+    for fit in sorted(fits, key=lambda fit: fit.outcome.left_out_cost):
+        kept.setdefault(size(fit), fit)
+    return [fit for fit in fits if kept[size(fit)] is fit]
 
 
 def _without(hypothesis: Hypothesis, name: str) -> Hypothesis:
