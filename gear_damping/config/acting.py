@@ -9,6 +9,7 @@ from typing import Any
 from gear_damping.config.locate import groups
 from gear_damping.config.measured import MEASURED
 from gear_damping.config.source import COMMAND_LINE, EXPERIMENT, Origin
+from gear_damping.units import SUFFIXES
 
 Found = Iterator[tuple[str, str, Any, str]]  # key, rule, value, remedy
 
@@ -53,13 +54,16 @@ ACTS: dict[str, tuple[str, ...]] = {  # a key that is not here is one of the nex
     "simulator.extended": RIG,
 }
 OF_ANY_FIT = ("simulator.plugins", "simulator.solver", "simulator.solver.accuracy", "simulator.extended")
-ALSO_CHOSEN = {"simulator": MEASURED, "family": (PLAN, *MEASURED)}  # choices that say which rig it is, and no more
+OF_A_RIG = (IDENTIFY, EXPLAIN)  # tasks that take simulator=… and family=none, which say which rig it is, and no more
+NOTHING_DRAWN = "none"  # the family of one rig: it says of every task but that of files alone what it does anyway
+SET_BY_TESTS = {"pinion_speed": "speeds", "initial_displacement": "amplitudes"}  # of the rig: that key of plan sets it
 OFF = {  # what is typed to say that nothing is wanted
     **dict.fromkeys(("checkpoint", "resume", "sweep", "ruled_out", "figures", "simulator.extended"), "null"),
     **dict.fromkeys(("measurement.path", "measurement.channel", "measurement.plugins"), "null"),
     "measurement": "none",
     "write_measurement": "false",
 }
+IDLE = "has no effect in task"  # how the rule begins that a key does not act
 NOMINAL = "of the nominal rig of the measurement.yaml"
 REASONS = {  # (task, key of the table): why it has no effect there, and what helps
     (IDENTIFY, "simulator"): (
@@ -74,6 +78,7 @@ REASONS = {  # (task, key of the table): why it has no effect there, and what he
         f"the search begins with a fit {NOMINAL}",
         "leave it out; task=identify fits it to records, task=train, simulate, evaluate and plan simulate it",
     ),
+    (PLAN, "family"): ("nothing is drawn, and plan.speeds says how fast the tests run", "leave it out"),
     (IDENTIFY, "wavelet"): (
         "it acts on networks that are trained, in task=train",
         "leave it out; the estimator wavelet_ridge has model.omega0",
@@ -92,22 +97,52 @@ def idle_keys(config: Mapping[str, Any], origin: Origin) -> Found:
     An experiment is held to its task where that is not typed: every key of it has to act. With a typed task
     (`task=simulate experiment=limit`) one of them has to.
     """
-    task, simulator = config["task"], config.get("simulator")
-    is_extended = isinstance(simulator, Mapping) and simulator.get("extended") is not None
+    task, is_extended = config["task"], _is_extended(config)
     for key, value in origin.typed():
-        if OFF.get(key) != value and key != EXPERIMENT and not _is_acting(key, value, task, is_extended, origin):
+        if OFF.get(key) == value or key == EXPERIMENT:
+            continue
+        if not _is_acting(key, value, config, origin):
             yield key, *_said(key, task, value)
+        elif by := _set_by_tests(key, config):
+            rule = f"has no effect beside plan.{by}: every test has one of these"
+            yield key, rule, value, "leave one of them out"
     yield from _of_the_experiment(task, is_extended, origin)
 
 
-def _is_acting(key: str, value: str, task: str, is_extended: bool, origin: Origin) -> bool:
+def _is_extended(config: Mapping[str, Any]) -> bool:
+    simulator = config.get("simulator")
+    return isinstance(simulator, Mapping) and simulator.get("extended") is not None
+
+
+def _is_acting(key: str, value: str, config: Mapping[str, Any], origin: Origin) -> bool:
     """Whether something typed acts; a choice does where its file gives keys of other groups that do."""
+    task, is_extended = config["task"], _is_extended(config)
     if _acts(key, task, is_extended):
         return True
     if key not in groups():
         return False
+    if key == "family" and task == PLAN:  # by the speed of the rig that it gives, or that it does not
+        return value == NOTHING_DRAWN or not _says(config, "speeds")
+    if key == "family" and task in OF_A_RIG and (value == NOTHING_DRAWN or (is_extended and task == IDENTIFY)):
+        return True
     others = (one for one in origin.given_by(key) if not one.startswith(f"{key}."))
-    return task in ALSO_CHOSEN.get(key, ()) or any(_acts(one, task, is_extended) for one in others)
+    return (key == "simulator" and task in OF_A_RIG) or any(_acts(one, task, is_extended) for one in others)
+
+
+def _set_by_tests(key: str, config: Mapping[str, Any]) -> str | None:
+    """The key of a plan that sets a value of the rig in every test; None where none does."""
+    group, _, name = key.partition(".")
+    if config["task"] != PLAN or group != "simulator":
+        return None
+    spelled = {name, name.rpartition("_")[0] if name.rpartition("_")[2] in SUFFIXES else name}
+    return next((by for one, by in SET_BY_TESTS.items() if one in spelled and _says(config, by)), None)
+
+
+def _says(config: Mapping[str, Any], name: str) -> bool:
+    """Whether the plan says something under a key, whatever its unit."""
+    plan = config.get("plan")
+    given = plan.items() if isinstance(plan, Mapping) else ()
+    return any(key == name or key.startswith(f"{name}_") for key, value in given if value)
 
 
 def _of_the_experiment(task: str, is_extended: bool, origin: Origin) -> Found:
@@ -144,4 +179,4 @@ def _said(key: str, task: str, value: Any) -> tuple[str, Any, str]:
     entry = _entry(key)
     why, remedy = REASONS.get((task, entry), (f"it acts in {', '.join(f'task={one}' for one in ACTS[entry])}", ""))
     why = OF_THE_STUDY if task == PAPER else why
-    return f"has no effect in task={task}: {why}", value, remedy or "leave it out"
+    return f"{IDLE}={task}: {why}", value, remedy or "leave it out"

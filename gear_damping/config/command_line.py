@@ -15,6 +15,7 @@ from hydra.core.override_parser.types import Override
 from hydra.errors import HydraException
 
 from gear_damping.at_home import at_home
+from gear_damping.config.listed import takes_list
 from gear_damping.config.locate import conf_folder, groups
 from gear_damping.config.many_records import PATH, all_named
 from gear_damping.errors import Problem, nearest
@@ -148,7 +149,7 @@ def _read_override(argument: str, many: bool, before: str) -> tuple[list[Problem
         rule = f"a key of {len(key)} letters, which none has"
         return [Problem(f"{key[:40]}…", rule, remedy="write key=value with a key of --help", source=SOURCE)], []
     if not many and not parsed.is_delete() and parsed.is_sweep_override():
-        return [Problem(key, "has several values and this is one run", value, _one_value(value), SOURCE)], []
+        return [Problem(key, "has several values and this is one run", value, _one_value(key, value), SOURCE)], []
     if key in PLACES and key != PLACES[many]:
         rule = f"is the place {'of one run, and this is a sweep' if many else 'of a sweep, and this is one run'}"
         return [Problem(key, rule, value, f"use {PLACES[many]}=FOLDER", SOURCE)], []
@@ -183,10 +184,11 @@ def _parsed(argument: str, many: bool) -> tuple[Override, str]:
     return parsed, argument
 
 
-def _one_value(value: str) -> str:
-    """The remedy for several values in one run: a decimal comma looks like two."""
+def _one_value(key: str, value: str) -> str:
+    """The remedy for several values in one run: a decimal comma looks like two, and some keys take a list."""
     number = f"write {value.replace(',', '.')} for one number; " if _DECIMAL_COMMA.fullmatch(value) else ""
-    return f"{number}add --multirun for a sweep, or write a list: [a,b]"
+    listed = ", or write a list: [a,b]" if takes_list(key) else ""
+    return f"{number}add --multirun (-m) for a sweep, a run for each{listed}"
 
 
 def _missing_launcher(name: str) -> list[Problem]:

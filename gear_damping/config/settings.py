@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from gear_damping.config import keys
+from gear_damping.config.acting import IDLE
 from gear_damping.config.combinations import combination_problems
 from gear_damping.config.learners import ModelSettings, read_models, read_wavelet
 from gear_damping.config.measured import measurement_file
@@ -85,7 +86,10 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
     if wavelet is not None:
         config["wavelet"] = wavelet  # its numbers are in the unit of their key now
     whole = Whole(config, simulator, origin, models)
-    problems += combination_problems(whole, {problem.key for problem in problems})
+    found = combination_problems(whole, {problem.key for problem in problems})
+    # The simulator that is read is not the one of the measurement: of a key that cannot act no other name is offered.
+    idle = {one.key for one in found if one.rule.startswith(IDLE) and one.key.startswith("simulator.")}
+    problems = [one for one in problems if one.key not in idle] + found
     if problems:
         raise InputError(problems)
     return Settings(

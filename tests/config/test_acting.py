@@ -62,6 +62,12 @@ IDLE = [
     ("explain", "experiment=eccentricity", "what is known of the rig is said under parameters there"),
     ("explain", "simulator.backlash.gap_um=5", "what is known of the rig is said under parameters there"),
     ("explain", "simulator.extended=nowhere.yaml", "task=identify fits it to records"),
+    *((task, f"family={one}", "it acts in task=train, task=simulate, task=evaluate")
+      for task in ("identify", "explain", "inspect") for one in ("paper", "field", "bench")),
+    ("plan", "family=paper", "plan.speeds says how fast the tests run"),
+    ("plan", "family=field", "plan.speeds says how fast the tests run"),
+    ("inspect", "family=none", "it acts in task=train"),
+    ("inspect", "simulator=oscillator", "it acts in task=train"),
 ]  # fmt: skip
 
 
@@ -81,7 +87,9 @@ ACTING = [
     ("simulate", ["write_measurement=false", "checkpoint=null", "measurement=none"]),
     ("evaluate", ["experiment=backlash", "family=field", "evaluation.snr_db=[30,10]", "training=smoke"]),
     ("evaluate", ["model.plugins=[docs/examples/my_estimator.py]"]),
-    ("plan", ["family=paper", "seed=3", "simulator.damping_ratio_percent=0.3", "plan.joint=true"]),
+    ("plan", ["family=paper", "plan.speeds_rpm=null", "seed=3", "simulator.damping_ratio_percent=0.3"]),
+    ("plan", ["family=none", "seed=3", "simulator.damping_ratio_percent=0.3", "plan.joint=true"]),
+    ("plan", ["simulator.pinion_torque=90", "plan.speeds_rpm=null", "simulator.pinion_speed_rpm=1234"]),
     ("plan", ["experiment=backlash"]),
     ("train", ["experiment=limit", "training.devices=2", "seeds=2"]),
     ("paper", ["training=smoke", "simulator.n_runs=12", "protocol.windows_per_epoch=64", "figures=[table_1]"]),
@@ -107,6 +115,7 @@ def test_an_extended_rig_takes_what_comes_on_top_of_it_and_no_data_set(tmp_path)
     given = [f"simulator.extended={path}", "simulator.backlash.gap_um=5", "simulator.pinion_torque=100"]
     assert problems("identify", *given, "experiment=eccentricity", "model=classical") == []
     assert problems("identify", *given, "simulator.solver.accuracy=1e-4", "model=classical") == []
+    assert problems("identify", *given, "family=field") == [], "the speed of the file counts, and not that of bench"
     (found,) = problems("identify", *given, "simulator.n_runs=3")
     assert found.key == "simulator.n_runs"
     assert "task=identify" not in found.rule.partition(": ")[2]
@@ -138,6 +147,33 @@ def test_the_solver_has_no_effect_on_estimators(word):
 @pytest.mark.parametrize("word", ["model=classical", "checkpoint=README.md"])
 def test_estimators_are_asked_about_a_channel(word):
     assert problems("identify", "measurement.channel=displacement", word) == []
+
+
+OSCILLATOR = ["simulator=oscillator", "family=none", "simulator.damping_ratio_percent=1"]
+
+
+@pytest.mark.parametrize(
+    ("words", "key", "by"),
+    [
+        (["experiment=plan", "simulator.pinion_speed_rpm=1234"], "simulator.pinion_speed_rpm", "plan.speeds"),
+        (["experiment=plan", "simulator.pinion_speed=123"], "simulator.pinion_speed", "plan.speeds"),
+        ([*OSCILLATOR, "plan.amplitudes=[1cm]", "simulator.initial_displacement=3"],
+         "simulator.initial_displacement", "plan.amplitudes"),
+    ],
+)  # fmt: skip
+def test_what_the_tests_of_a_plan_set_is_refused_beside_them(words, key, by):
+    typed = read_command_line(["task=plan", *words])
+    (found,) = problems_of(typed.overrides)
+    assert found.key == key
+    assert str(found).startswith(f"{key} = '{found.value}': has no effect beside {by}: every test has one of these")
+    assert "; remedy: leave one of them out" in str(found)
+
+
+@pytest.mark.parametrize("key", ["simulator.stiffness", "simulator.stifness"])
+def test_of_a_key_that_cannot_act_no_other_name_is_offered(key):
+    (found,) = problems("identify", f"{key}=300")
+    assert "did you mean" not in str(found)
+    assert "has no effect in task=identify: the fit is one of the nominal rig" in found.rule
 
 
 class OwnExperiment(Origin):

@@ -208,7 +208,7 @@ def test_no_such_file_and_a_wrong_simulator_are_said(tmp_path, caplog, capsys):
     assert main(["task=inspect", *place, "simulator.stifness=3"]) == 1
     assert "simulator.stifness = '3': has no effect in task=inspect" in caplog.text
     assert main(["task=inspect", *place, "simulator=oscillator"]) == 1
-    assert "simulator.pinion_speed_rpm: no such effect or parameter" in caplog.text + capsys.readouterr().err
+    assert "simulator = 'oscillator': has no effect in task=inspect" in caplog.text + capsys.readouterr().err
 
 
 def test_the_guess_of_a_gear_file_passes_the_check_where_the_blanks_are_filled(tmp_path):

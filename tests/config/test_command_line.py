@@ -1,0 +1,21 @@
+"""Words of a command: what they stand for, and the remedy where one cannot be taken."""
+
+import pytest
+
+from gear_damping.config.command_line import read_command_line
+
+
+@pytest.mark.parametrize(
+    ("key", "is_offered"),
+    [
+        ("simulator.pinion_speed_rpm", False), ("simulator.backlash.gap_um", False), ("seed", False),
+        ("simulator.pitch_error.values", True), ("simulator.torque_variation.step_times_ms", True),
+        ("plan.speeds_rpm", True), ("plan.wanted_percent", False), ("evaluation.snr_db", True), ("figures", True),
+        ("model.names", True), ("simulator.plugins", True), ("nothing.such.key", False), ("plan", False),
+    ],
+)  # fmt: skip
+def test_a_list_is_offered_for_keys_that_take_one(key, is_offered):
+    (problem,) = read_command_line([f"{key}=1000,2000"]).problems
+    assert "several values" in problem.rule
+    assert ("[a,b]" in problem.remedy) == is_offered
+    assert "add --multirun (-m) for a sweep" in problem.remedy
