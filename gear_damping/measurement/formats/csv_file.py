@@ -32,6 +32,7 @@ from gear_damping.measurement.formats.stated_rate import stated_rate
 from gear_damping.measurement.formats.table import Table, is_real
 from gear_damping.measurement.formats.text_header import of_oscilloscope, text_header, without_other_headers
 from gear_damping.measurement.formats.text_lines import BEGINS, HEAD, IS_COMMENT, Text, bytes_of
+from gear_damping.measurement.formats.timeseries_text import timeseries_table
 from gear_damping.units import is_of_kind
 
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".log", ".prn", ".gz")
@@ -52,6 +53,8 @@ def read(path: Path, max_bytes: int) -> Table:
     content = bytes_of(path, max_bytes)
     if (variables := octave_table(path, content)) is not None:
         return variables
+    if (series := timeseries_table(path, content)) is not None:
+        return series
     text = Text(path, content)
     refuse_what_is_shown(str(path), text.utf8[:_SEEN].decode("utf-8", "replace").splitlines()[:HEAD])
     header, first_line = text_header(text)

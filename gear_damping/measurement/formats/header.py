@@ -42,6 +42,7 @@ _LABELS = {  # of a row, in a cell before the columns
 }
 _LOGGER = "TOA5"  # the first word in files of Campbell's loggers,
 _OF_LOGGER = 4  # ... and rows of their head: the station, names, units, what was done with the values
+_RECORDER = ("TraceName", "VUnit")  # before the names and the units in files of Yokogawa's recorders
 _TABLE = 3  # rows that a table begins with, none of them of texts alone
 
 
@@ -123,7 +124,7 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
 
 def known_header(rows: Sequence[Sequence[str]], width: int) -> Header | None:
     """The header of a table whose rows say themselves what they are; None of any other."""
-    return _of_logger(rows) or _labelled(rows, width)
+    return _of_logger(rows) or _of_recorder(rows, width) or _labelled(rows, width)
 
 
 def _of_logger(rows: Sequence[Sequence[str]]) -> Header | None:
@@ -132,6 +133,16 @@ def _of_logger(rows: Sequence[Sequence[str]]) -> Header | None:
         return None
     names, units = ([cell.strip() for cell in row] for row in rows[1:3])
     return Header(tuple(names), tuple(unit if _is_unit(unit) else "" for unit in units), _OF_LOGGER, 1)
+
+
+def _of_recorder(rows: Sequence[Sequence[str]], width: int) -> Header | None:
+    """The header of settings for each channel, below which the cells under their names are empty (Yokogawa)."""
+    said = {row[0].strip(): [cell.strip() for cell in row[1:width]] for row in rows if row[0].strip()}
+    first = next((k for k, row in enumerate(rows) if not row[0].strip() and _has_number(row)), 0)
+    if not first or not all(len(said.get(label, ())) == width - 1 for label in _RECORDER):
+        return None
+    names, units = (("", *said[label]) for label in _RECORDER)
+    return Header(names, units, first, first)
 
 
 def _labelled(rows: Sequence[Sequence[str]], width: int) -> Header | None:

@@ -27,7 +27,9 @@ _STEP_ALONE = re.compile(
 )  # of MATLAB, and of its files made by Simcenter
 _IN_NAME = re.compile(r"_(ns|us|ms|s|hz|khz|mhz)[\s:=]*$", re.I)  # `sample_interval_us`
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.I)
+_OF_A_NAME = re.compile(r"[^\W\d]")  # before a number that is a part of it, as in `CH1` and `Signal_0`
 _DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")  # within a cell: one that parts cells is in none
+_FRAMES = ["Frame", "Sub Frame"]  # the names of the first columns in tables of Vicon
 _LONGEST_NAME = 40  # characters, assumed: what is longer is a sentence
 
 
@@ -39,10 +41,22 @@ def stated_rate(rows: Iterable[Sequence[str]], beside_arrays: bool = False) -> t
         beside_arrays: Whether they are numbers beside arrays, of which one that is called `rate` is that of these.
     """
     rows = [*rows]
+    if (frames := _of_frames(rows)) is not None:
+        return frames
     rows += [pair for above, below in pairwise(rows) for pair in _over_their_values(above, below)]
     found = [one for row in rows if (one := _of_row(row, beside_arrays)) is not None]
     rates = {f"{rate:.5g}" for _, rate in found}
     return found[0] if len(rates) == 1 else None
+
+
+def _of_frames(rows: Sequence[Sequence[str]]) -> tuple[str, float] | None:
+    """The rate in Hz that stands alone below the title of a table of frames (Vicon: `Trajectories`, `100`)."""
+    said = [[cell.strip() for cell in row if cell.strip()] for row in rows]
+    if len(said) < 3 or [len(row) for row in said[:2]] != [1, 1] or not _NUMBER.fullmatch(said[1][0]):
+        return None
+    is_named = any(row[: len(_FRAMES)] == _FRAMES for row in said[2:])
+    rate = float(said[1][0])
+    return (said[0][0], rate) if is_named and 0 < rate < inf else None
 
 
 def _over_their_values(above: Sequence[str], below: Sequence[str]) -> list[tuple[str, str]]:
@@ -55,7 +69,7 @@ def _over_their_values(above: Sequence[str], below: Sequence[str]) -> list[tuple
 def _of_row(row: Sequence[str], beside_arrays: bool) -> tuple[str, float] | None:
     cells = (_DECIMAL_COMMA.sub(".", cell.strip().strip('"')) for cell in row if cell.strip())
     text = " ".join(cells).lstrip("#%/;*! ")
-    number = next((one for one in _NUMBER.finditer(text) if not text[one.start() - 1 : one.start()].isalpha()), None)
+    number = next((one for one in _NUMBER.finditer(text) if not _OF_A_NAME.match(text[: one.start()][-1:])), None)
     if number is None:
         return None
     name, behind = text[: number.start()], text[number.end() :].split()
