@@ -63,19 +63,22 @@ _ATOMS: dict[str, Unit] = {
     "dm": Unit(0.1, _M), "pm": Unit(1e-12, _M),
     "s": Unit(1.0, _S), "ms": Unit(1e-3, _S), "us": Unit(1e-6, _S), "ns": Unit(1e-9, _S), "min": Unit(60.0, _S),
     "h": Unit(3600.0, _S), "day": Unit(86400.0, _S),
-    "Hz": Unit(1.0, _S**-1), "kHz": Unit(1e3, _S**-1), "MHz": Unit(1e6, _S**-1),
+    "Hz": Unit(1.0, _S**-1), "mHz": Unit(1e-3, _S**-1), "kHz": Unit(1e3, _S**-1), "MHz": Unit(1e6, _S**-1),
     "N": Unit(1.0, _N), "kN": Unit(1e3, _N), "mN": Unit(1e-3, _N),
     "MN": Unit(1e6, _N), "daN": Unit(10.0, _N), "uN": Unit(1e-6, _N),
     "Nm": Unit(1.0, _N * _M), "rad": Unit(1.0, _RAD), "mrad": Unit(1e-3, _RAD), "urad": Unit(1e-6, _RAD),
     "deg": Unit(pi / 180, _RAD), "arcmin": Unit(pi / 10800, _RAD), "arcsec": Unit(pi / 648000, _RAD),
-    "rev": Unit(2 * pi, _RAD), "rpm": Unit(2 * pi / 60, _RAD * _S**-1),
-    "V": Unit(1.0, _V), "mV": Unit(1e-3, _V), "uV": Unit(1e-6, _V),
+    "rev": Unit(2 * pi, _RAD), "rpm": Unit(2 * pi / 60, _RAD * _S**-1), "gon": Unit(pi / 200, _RAD),
+    "krpm": Unit(2e3 * pi / 60, _RAD * _S**-1),
+    "V": Unit(1.0, _V), "kV": Unit(1e3, _V), "mV": Unit(1e-3, _V), "uV": Unit(1e-6, _V),
     "A": Unit(1.0, _A), "mA": Unit(1e-3, _A),
     "gn": Unit(9.80665, _M * _S**-2), "mgn": Unit(9.80665e-3, _M * _S**-2),
     "kNm": Unit(1e3, _N * _M), "mNm": Unit(1e-3, _N * _M),
     "Pa": Unit(1.0, _PA), "hPa": Unit(100.0, _PA), "kPa": Unit(1e3, _PA), "MPa": Unit(1e6, _PA),
-    "bar": Unit(1e5, _PA), "mbar": Unit(100.0, _PA),
-    "mil": Unit(2.54e-5, _M), "ips": Unit(0.0254, _M * _S**-1),
+    "bar": Unit(1e5, _PA), "mbar": Unit(100.0, _PA), "Gal": Unit(1e-2, _M * _S**-2), "mGal": Unit(1e-5, _M * _S**-2),
+    "mil": Unit(2.54e-5, _M), "ips": Unit(0.0254, _M * _S**-1), "mph": Unit(0.44704, _M * _S**-1),
+    "knot": Unit(1852 / 3600, _M * _S**-1), "ozf": Unit(4.4482216152605 / 16, _N),
+    "Ns": Unit(1.0, _N * _S), "Nms": Unit(1.0, _N * _M * _S),
 }  # fmt: skip
 
 # What an accelerometer counts in. By itself it is no mass: a mass here is `gram` or `kg`.
@@ -89,10 +92,14 @@ _COUNTED = (
     "a.u", "au", "arb", "arb.", "arbitrary", "adc", "raw", "unitless", "dimensionless", "none",
 )  # fmt: skip
 _ALIKE = 0.6  # share of the letters that a unit must have in common with a word to be meant by it
+_SELDOM = ("krpm", "Nms")  # what nobody means by a word that is nearly alike: `kpm`, `Nms2`
 _POUND = "write 'lbf' for a force, or give a mass in kg"
 _MEANT = {
     "g": "write 'gram' or 'gn' (9.80665 m/s^2)", "mg": "write 'mgn' (9.80665e-3 m/s^2), or a mass in 'gram'",
     "degc": "a temperature is not read", "ft-lb": "write 'ft*lbf'", "ft-lbs": "write 'ft*lbf'",
+    "grad": "write 'deg', or 'gon' where 400 make a turn", "oz": "write 'ozf' for a force, or give a mass in kg",
+    "oz-in": "write 'ozf*in'", "ozin": "write 'ozf*in'", "ozf-in": "write 'ozf*in'", "in-oz": "write 'ozf*in'",
+    **dict.fromkeys(("in-lb", "in-lbs", "lb-in", "lbs-in", "inlb", "lbin"), "write 'lbf*in'"),
     "psi": "write 'lbf/in^2'", "d": "write 'day'", "lb": _POUND, "lbs": _POUND, "pound": _POUND, "pounds": _POUND,
 }  # fmt: skip
 
@@ -103,7 +110,8 @@ _ALSO = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms", "usec": "us", "minutes": "min",
     "milliseconds": "ms", "microseconds": "us", "nanoseconds": "ns", "minute": "min", "hour": "h", "hours": "h",
     "micron": "um", "microns": "um", "mils": "mil", "thou": "mil", "inch": "in", "inches": "in", "Inch": "in",
-    "RPM": "rpm", "U/min": "rpm", "Volt": "V", "Volts": "V", "volt": "V", "volts": "V",
+    "RPM": "rpm", "U/min": "rpm", "Upm": "rpm", "UPM": "rpm", "knots": "knot", "gons": "gon",
+    "Volt": "V", "Volts": "V", "volt": "V", "volts": "V",
     "Newton": "N", "newton": "N", "newtons": "N",
     "amp": "A", "amps": "A", "ampere": "A", "Ampere": "A", "hz": "Hz",
     "HZ": "Hz", "Deg": "deg", "DEG": "deg", "Grad": "deg", "degree": "deg", "degrees": "deg",
@@ -281,7 +289,7 @@ def _alike(name: str) -> str:
     plain = name.replace(" ", "")
     if (other := _ALSO.get(plain.lower())) or plain.lower() in _ATOMS:
         return f"did you mean '{other or plain.lower()}'?"
-    found = get_close_matches(plain, list(_ATOMS), n=1, cutoff=_ALIKE)
+    found = get_close_matches(plain, [one for one in _ATOMS if one not in _SELDOM], n=1, cutoff=_ALIKE)
     if found and len(plain) > len(found[0]) and not plain.lower().startswith(found[0].lower()):
         found = []  # what is longer and begins otherwise is another unit: no kilometre in `kgm`
     return f"did you mean '{found[0]}'?" if found else f"choose one of {', '.join(sorted(_ATOMS))}"

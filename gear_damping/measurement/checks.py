@@ -262,8 +262,8 @@ def _straight_lines(channel: Channel) -> Finding | None:
     if factor < 2:
         return None
     message = (
-        f"{channel.name} runs in straight lines of {factor} samples: it was interpolated from a {factor} times "
-        "coarser record, whose noise and bandwidth are lost; give the record as it was measured"
+        f"{channel.name} runs in straight lines of {factor} samples: it was interpolated from a record {factor} times "
+        "coarser, whose noise and bandwidth are lost; give the record as it was measured"
     )
     return Finding("interpolated", message, channel=channel.name)
 

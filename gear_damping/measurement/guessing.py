@@ -54,6 +54,8 @@ _OSCILLATOR_NAMES = (
         r"^[qxyz](_?\w)?$|^s$|way|weg",
     ),
 )
+_COMPONENT = re.compile(r"[/.]([xyzw])$")  # of what stands before it in a path: `/imu/angular_velocity/x`
+_OF_NO_MOTION = re.compile(r"magnet|orient|quat|temperat")  # what has components and is no channel by these
 _LETTERED = re.compile(r"(ch(an(nel)?)?|kanal|input|port|probe)[ ._-]*[a-d]")  # of an oscilloscope, and no quantity
 _OF_FREQUENCY = ("Hz", "kHz", "MHz")  # an axis of a spectrum, or what an exciter was set to
 _OTHERWISE = {"torque": "N*m", "tacho": "V"}
@@ -258,7 +260,12 @@ def _by_name(column: Column, names: Sequence[tuple[str, str]]) -> str | None:
     plain, whole = _plain(column), _bare(column).split("/")[-1]
     if _LETTERED.fullmatch(whole):
         return None
-    return next((channel for channel, words in names if re.search(words, plain) or re.search(words, whole)), None)
+    component = _COMPONENT.search(_bare(column))
+    if component and _OF_NO_MOTION.search(plain):
+        return None
+    found = (channel for channel, words in names if re.search(words, plain) or re.search(words, whole))
+    alone = (channel for channel, words in names if component and re.search(words, component[1]))
+    return next(found, None) or next(alone, None)
 
 
 def _bare(column: Column) -> str:
@@ -272,10 +279,10 @@ def _bare(column: Column) -> str:
 
 
 def _plain(column: Column) -> str:
-    """The last word of a name, without the path before it and a unit at its end."""
+    """The last word of a name, without the path before it, a unit at its end and the letter of a component."""
     words = [word for word in re.split(r"[/\s]+|\.(?=\D)", _bare(column)) if word]
     kept = words[-1] if words else ""
-    if len(words) > 1 and kept in NAMED_UNITS:
+    if len(words) > 1 and (kept in NAMED_UNITS or _COMPONENT.search(_bare(column))):
         return words[-2]
     head, _, tail = kept.rpartition("_")
     return head if head and tail in NAMED_UNITS else kept

@@ -83,7 +83,8 @@ def _filled(path: str | Path) -> object:
         InputError: it cannot be read, or something in it waits to be filled in.
     """
     if not isinstance(path, str | PathLike):
-        rule = f"must be a path, and is a {type(path).__name__}"
+        kind = type(path).__name__
+        rule = f"must be a path, and is {'an' if kind[0] in 'aeiou' else 'a'} {kind}"
         remedy = "give the path of a measurement.yaml, or what was read from it to identify and explain"
         raise InputError(Problem("path", rule, remedy=remedy))
     content = read_yaml(at_home(path))

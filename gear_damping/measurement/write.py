@@ -88,7 +88,7 @@ def _refuse_names(system: str, records: Sequence[Record], own: "type[System] | N
             raise ValueError(f"{rule}; use letters, digits, '_', '-', '.'")
         unknown = set(record.channels) - set(CHANNELS[system] if own is None else (*own.responses, *own.inputs))
         if unknown:
-            rule = f"record '{record.name}' has channels {sorted(unknown)} that a {system} lacks"
+            rule = f"record '{record.name}' has channels {sorted(unknown)} that no {system} has"
             raise ValueError(f"{rule}; drop them")
 
 

@@ -161,6 +161,8 @@ def test_a_folder_and_a_measurement_are_no_paths_of_a_yaml(tmp_path):
         gd.load(tmp_path)
     with pytest.raises(gd.InputError, match="must be a path, and is a Measurement"):
         gd.load(measurement)
+    with pytest.raises(gd.InputError, match="must be a path, and is an int;"):
+        gd.load(3)
 
 
 @pytest.mark.parametrize(

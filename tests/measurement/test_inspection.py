@@ -7,7 +7,7 @@ from scipy.io import savemat
 
 from gear_damping.measurement.column_kinds import CONSTANT, COUNTER, PULSES, SIGNAL, TIME, TURNING
 from gear_damping.measurement.formats.registry import read_table
-from gear_damping.measurement.guessing import UNKNOWN, guesses, system_of
+from gear_damping.measurement.guessing import UNKNOWN, guessed, guesses, system_of
 from gear_damping.measurement.inspection import inspect_table, of_columns
 from gear_damping.measurement.spectral_floor import spectrum_of
 from gear_damping.measurement.starting_yaml import starting_yaml
@@ -397,3 +397,23 @@ def test_a_unit_behind_a_stroke_is_no_name(tmp_path):
     found = inspect_table(read_table(tmp_path / "a.csv"))
     known = {g.column.reference.split()[0]: g.channel for g in guesses(found, "oscillator")}
     assert known == {"Weg": "displacement", "Spannung": "force", "Frequenz": None}
+
+
+@pytest.mark.parametrize(
+    ("name", "channel", "why"),
+    [
+        ("/imu/angular_velocity/x", "velocity", "by its name"),
+        ("imu.linear_acceleration.y", "acceleration", "by its name"),
+        ("/pose/position/z", "displacement", "by its name"),
+        ("run1/x", "displacement", "by its name"),
+        ("run1.x", "displacement", "by its name"),
+        ("/imu/magnetic_field/x", "displacement", "the slowest column; what it is, only you know"),
+        ("/imu/orientation/w", "displacement", "the slowest column; what it is, only you know"),
+    ],
+)
+def test_the_letter_of_a_component_is_no_name(name, channel, why, tmp_path):
+    time = np.arange(500) * 0.01
+    rows = "\n".join(f"{t:.3f},{x:.6f}" for t, x in zip(time, np.exp(-0.2 * time) * np.cos(9 * time), strict=True))
+    (tmp_path / "a.csv").write_text(f"time,{name}\n{rows}\n")
+    _, _, (guess,) = guessed(read_table(tmp_path / "a.csv"))
+    assert (guess.channel, guess.why) == (channel, why)

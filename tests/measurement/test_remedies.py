@@ -235,7 +235,7 @@ def test_a_rate_below_one_may_be_the_time_of_a_sample():
         Rate().read(0.001, "sampling_rate")
 
 
-@pytest.mark.parametrize("unit", ["kpm", "Nms2", "grad"])
+@pytest.mark.parametrize("unit", ["kpm", "Nms2", "trad"])
 def test_no_unit_is_meant_by_one_that_begins_otherwise(unit):
     with pytest.raises(InputError, match="choose one of"):
         parse_unit(unit)

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from gear_damping.errors import InputError
-from gear_damping.units import parse_unit, scaled_unit, spoken, to_si, unit_names
+from gear_damping.units import multiple_of_a_unit, parse_unit, scaled_unit, spoken, to_si, unit_names
 
 STANDARD_GRAVITY = 9.80665
 
@@ -16,6 +16,10 @@ STANDARD_GRAVITY = 9.80665
         ("km/h", 1 / 3.6), ("N*m", 1.0), ("g", STANDARD_GRAVITY), ("m/s^2", 1.0), ("rpm", 0.10471975511965977),
         ("kg*mm^2", 1e-6), ("deg/s", 0.017453292519943295), ("µm", 1e-6),
         ("in", 0.0254), ("ft/s^2", 0.3048), ("lbf", 4.4482216152605), ("kgf", STANDARD_GRAVITY), ("mA", 1e-3),
+        ("Gal", 0.01), ("mGal", 1e-5), ("gon", 0.015707963267948967), ("krpm", 104.71975511965977),
+        ("Upm", 0.10471975511965977), ("mph", 0.44704), ("knots", 0.5144444444444445), ("kV", 1e3), ("mHz", 1e-3),
+        ("ozf*in", 0.00706155181422604), ("lbf*in", 0.1129848290276167), ("Ns/m", 1.0), ("Nms/rad", 1.0),
+        ("Ns/mm", 1e3), ("millimeter", 1e-3), ("Mikrometer", 1e-6),
     ],
 )  # fmt: skip
 def test_a_unit_has_its_factor(text, factor):
@@ -43,6 +47,36 @@ def test_what_is_counted_has_no_unit(text, right):
     assert parse_unit(right)
 
 
+@pytest.mark.parametrize(
+    ("text", "right"),
+    [
+        ("in-lb", "lbf*in"), ("lb-in", "lbf*in"), ("in-lbs", "lbf*in"), ("oz-in", "ozf*in"), ("grad", "gon"),
+        ("grad", "deg"), ("oz", "ozf"), ("ft-lb", "ft*lbf"),
+    ],
+)  # fmt: skip
+def test_what_may_be_meant_is_offered_as_it_is_written_here(text, right):
+    with pytest.raises(InputError, match=re.escape(f"'{right}'")):
+        parse_unit(text)
+    assert parse_unit(right)
+
+
+@pytest.mark.parametrize(
+    ("text", "number", "factor"),
+    [
+        ("x10^-3 m", 1e-3, 1.0), ("×10⁻³ m", 1e-3, 1.0), ("*1e-3 m", 1e-3, 1.0), ("x1000 mm", 1e3, 1e-3),
+        ("0.1 mm", 0.1, 1e-3),
+    ],
+)  # fmt: skip
+def test_a_step_may_begin_with_a_sign_of_a_product(text, number, factor):
+    found, unit = multiple_of_a_unit(text)
+    assert (found, unit.factor) == (pytest.approx(number), factor)
+
+
+@pytest.mark.parametrize("text", ["x1 m", "x2 [V]", "mm", "x"])
+def test_what_is_no_step_of_a_unit_is_none(text):
+    assert multiple_of_a_unit(text) is None
+
+
 @pytest.mark.parametrize("text", ["mg", "milli-g", "mgn"])
 def test_a_milli_g_is_one_of_an_accelerometer(text):
     assert parse_unit(text).factor == pytest.approx(STANDARD_GRAVITY / 1000, rel=1e-12)
@@ -56,7 +90,7 @@ def test_a_milligram_is_not_taken_for_one():
         parse_unit("mg*m^2")
 
 
-@pytest.mark.parametrize("text", ["furlong", "rounds/min", "knots", "torr"])
+@pytest.mark.parametrize("text", ["furlong", "rounds/min", "fathom", "torr"])
 def test_no_unit_is_suggested_that_shares_hardly_a_letter(text):
     with pytest.raises(InputError) as caught:
         parse_unit(text)

@@ -93,7 +93,7 @@ def test_nothing_is_overwritten_and_nothing_half_written(tmp_path):
         ("gear_pair", [], "at least one"),
         ("gear_pair", [_record(), _record()], "each with its own name"),
         ("gear_pair", [_record("../escape")], "no file name"),
-        ("oscillator", [_record()], "a oscillator lacks"),
+        ("oscillator", [_record()], "that no oscillator has"),
     ],
 )
 def test_what_cannot_be_written_is_refused(tmp_path, system, records, said):

@@ -63,7 +63,9 @@ def _own(read: Reader, place: Path) -> Reader:
         with errors_in({str(place): KEY}):
             found = read(path, max_bytes)
         if not isinstance(found, Table):
-            rule, remedy = f"read gives a {type(found).__name__}", "return ArrayTable(path, [Held(...), ...])"
+            kind = type(found).__name__
+            article = "an" if kind[0] in "aeiou" else "a"
+            rule, remedy = f"read gives {article} {kind}", "return ArrayTable(path, [Held(...), ...])"
             raise InputError(Problem(KEY, rule, str(place), remedy))
         return found
 
