@@ -90,6 +90,9 @@ def identify(
 ) -> Identification:
     """Fit a simulation to the records that are to be fitted, and predict the held-out ones.
 
+    Held out is what `role` declares; where it declares none, a part of the records of a gear pair, and nothing of those
+    of an oscillator.
+
     Args:
         measurement: As `load` gives it.
         model: What is fitted; the linear oscillator, or the nominal gear pair, where absent. Values in another unit

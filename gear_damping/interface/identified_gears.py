@@ -32,6 +32,7 @@ from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, p
 from gear_damping.interface.own_start import own_start
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.model import Model
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.reporting import figures, tables
 from gear_damping.simulation.solver_settings import Solver
 
@@ -72,13 +73,14 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
 
     What neither gives keeps the default that the model prints; where it is free, it begins at what `explain` would
     begin with. Where no parameter is named, those that it was given are free, and of an oscillator its linear ones
-    and the strengths of its effects.
+    and the strengths of its effects. Of an oscillator all records are fitted that are not declared to be held out, as
+    the linear fit has it; of a gear pair a part is held out where none is declared to be.
 
     Raises:
         InputError: the model is of another system, or `own_start` refuses it.
     """
     _refuse_casing(measurement)
-    evidence = at_useful_rate(evidence_of(measurement))
+    evidence = at_useful_rate(evidence_of(measurement, holds_out=not measurement.base.has(Trait.REST)))
     if model.system.name != evidence.system:
         rule = f"is a {model.system.name}, the records are those of a {evidence.system}"
         raise InputError(Problem("model", rule, remedy="give a model of the measured system"))
@@ -123,7 +125,10 @@ def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
             "value": natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given()),
             "unit": "Hz",
         },
-        "residual": {role: {"rmse": rmse(residuals) / factor, "unit": unit} for role, (_, residuals) in roles.items()},
+        "residual": {
+            role: {"rmse": rmse(residuals) / factor, "unit": unit} if residuals else None
+            for role, (_, residuals) in roles.items()
+        },
         "lack_of_fit": {
             "significant": left.significant or lost is not None,
             "excess_percent": left.percent if lost is None else lost,
@@ -145,11 +150,12 @@ def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
 
 
 def _missed(found: Fitted) -> Excess:
-    """What is missed of the held-out records, or of the fitted ones where those hold nothing but noise."""
+    """What is missed of the held-out records, or of the fitted ones where there are none that hold more than noise."""
     evidence, outcome = found.evidence, found.outcome
-    held = excess(outcome.holdout, evidence.held, found.noise)
-    if held.threshold < WHOLE:
-        return held
+    if outcome.holdout:
+        held = excess(outcome.holdout, evidence.held, found.noise)
+        if held.threshold < WHOLE:
+            return held
     return excess(outcome.fit_residuals, evidence.fitted, found.noise)
 
 

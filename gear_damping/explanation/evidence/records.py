@@ -169,8 +169,12 @@ def is_begun_anew(evidence: Evidence) -> bool:
     return bool(evidence.segments) and not evidence.stated_segments and evidence.has_spring
 
 
-def evidence_of(measurement: Measurement) -> Evidence:
+def evidence_of(measurement: Measurement, *, holds_out: bool = True) -> Evidence:
     """The records of a measurement in their roles.
+
+    Args:
+        measurement: What was loaded.
+        holds_out: Whether a part is held out where the file says of no record that it is; else all is fitted.
 
     Raises:
         InputError: a record lacks a response that can be fitted, or some have an input that others lack.
@@ -192,10 +196,12 @@ def evidence_of(measurement: Measurement) -> Evidence:
     elif mode == "balanced":  # else torques tell how the shafts speed up
         swaying = with_slow_rotation([record for record, _ in records], gear_ratio(known.values))
         records = [(record, role) for record, (_, role) in zip(swaying, records, strict=True)]
-    fit, holdout = _roles(records, dies_away)
+    declared = records if holds_out else [(record, role or "fit") for record, role in records]
+    fit, holdout = _roles(declared, dies_away)
     one, silent = not holdout, 0.0
     if one:
         fit, silent = _audible(fit) if dies_away else (fit, 0.0)
+    if one and holds_out:
         fit, holdout = _cut(fit, dies_away, spring)
     return Evidence(
         system=measurement.system,
@@ -204,7 +210,7 @@ def evidence_of(measurement: Measurement) -> Evidence:
         holdout=tuple(holdout),
         known=known,
         channel=used[0].channels[response_names(used[0], base)[0]],
-        one_record=one and len(used) == 1,
+        one_record=one and holds_out and len(used) == 1,
         gear_torque_mode=mode,
         stated_segments=Segments(measurement.segment_s, exact=True) if measurement.segment_s else WHOLE,
         has_index=all("pinion_angle" in record.inputs for record, _ in records) or not base.has(Trait.SHAFTS),
