@@ -8,11 +8,14 @@ from typing import Any
 from gear_damping.identification.test_plan.channels import channels_of
 from gear_damping.identification.test_plan.maps import IntervalCurves, IntervalMap
 from gear_damping.identification.test_plan.plan import Precision, TestPlan, ToldTest
+from gear_damping.physics.damping_ratio import is_far
 from gear_damping.physics.systems.base import System
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.reporting.figures.test_plan import PlanCurves, PlanMap, PlanPicture
 from gear_damping.reporting.numbers import number, pretty_unit
 from gear_damping.reporting.tables import plan_table
 
+START = "initial_displacement"  # where a test of an oscillator begins
 RPM = 30 / pi  # revolutions a minute in one rad/s
 WIDE = 50.0  # % of the value; beyond it some estimates run off to no damping at all (docs/plan.md)
 MOST_OF_FRONT = 8  # sets that a reader looks through
@@ -69,7 +72,7 @@ def sentences(plan: TestPlan) -> list[str]:
     rig = surveyed.rig
     ratio = f"the damping ratio is {number(surveyed.ratio_percent)} % of critical at a velocity amplitude of "
     ratio += f"{_with_unit(float(rig.velocity), rig.model.system.unit_of('m/s'), 3)}, by {rig.damping.name}"
-    found.append(ratio + (", its exponent unknown" if goal.joint else ""))
+    found.append(ratio + (", its exponent unknown" if goal.joint else "") + _elsewhere(plan))
     if WIDE < goal_precision(plan, chosen or plan.best).percent < inf:
         found.append(f"beyond ± {WIDE:g} % some estimates run off to no damping at all: no interval is promised there")
     lost = int((~surveyed.fine).sum())
@@ -77,6 +80,23 @@ def sentences(plan: TestPlan) -> list[str]:
         text = f"{lost} of {surveyed.fine.numel()} tests diverge or move irregularly in simulation"
         found.append(f"{text}: nothing can be promised for them")
     return found
+
+
+def _elsewhere(plan: TestPlan) -> str:
+    """What is said where tests of an oscillator begin far from the amplitude that its damping ratio is stated at."""
+    rig = plan.survey.rig
+    if not rig.model.system.has(Trait.REST):
+        return ""
+    stated, unit = float(rig.values["amplitude"][0]), rig.model.system.unit_of("m")
+    own = float(rig.values[START][0])
+    starts = sorted({abs(one.get(START, own)) for one in plan.survey.settings})
+    if not any(is_far(stated, one) for one in starts):
+        return ""
+    begin = " … ".join(_with_unit(one, unit, 3) for one in dict.fromkeys((starts[0], starts[-1])))
+    return (
+        f", which is that of the rig's amplitude, {_with_unit(stated, unit, 3)}; the tests begin at {begin}, "
+        "and a damping that depends on the amplitude is another one there"
+    )
 
 
 def goal_precision(plan: TestPlan, told: ToldTest) -> Precision:

@@ -9,6 +9,7 @@ from math import pi, sqrt
 import torch
 from torch import Tensor
 
+FAR = 2.0  # times an amplitude: nearer, no law of damping tells a much different ratio
 DAMPING_RATIO = "damping_ratio"  # stands for the coefficient of a model's one damping law
 
 
@@ -40,6 +41,11 @@ def power_law_coefficient(
 def log_decrement(damping_ratio: Tensor) -> Tensor:
     """Delta = 2 pi zeta / sqrt(1 - zeta^2), natural logarithm of the ratio of successive peaks."""
     return 2 * pi * damping_ratio / torch.sqrt(1 - damping_ratio**2)
+
+
+def is_far(stated: float, start: float) -> bool:
+    """Whether a motion that begins at a displacement is far from the amplitude that a ratio is stated at."""
+    return bool(start) and not abs(start) / FAR < stated < FAR * abs(start)
 
 
 def reference_velocity(mean_load: Tensor, mean_stiffness: Tensor, mass: Tensor) -> Tensor:

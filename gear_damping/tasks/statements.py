@@ -8,7 +8,7 @@ import torch
 
 from gear_damping.config.settings import Settings
 from gear_damping.identification.trainer import Training
-from gear_damping.physics.damping_ratio import log_decrement
+from gear_damping.physics.damping_ratio import is_far, log_decrement
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import (
     BearingForce,
@@ -29,7 +29,6 @@ from gear_damping.simulation.runs import Runs
 BESIDE_THE_MESH = (
     BearingForce, ContactChange, ElasticForce, ExtraStates, LoadPath, MeshForceFactor, StiffnessFactor, SystemChange,
 )  # fmt: skip
-FAR = 2.0  # times an amplitude: nearer, no law of damping tells a much different ratio
 log = logging.getLogger("gear_damping").info
 
 
@@ -93,7 +92,7 @@ def _other_start(runs: Runs) -> str:
     if not runs.model.system.has(Trait.REST):
         return ""
     stated, start = (float(runs.values[name][0]) for name in ("amplitude", "initial_displacement"))
-    if not start or abs(start) / FAR < stated < FAR * abs(start):
+    if not is_far(stated, start):
         return ""
     at, begins = (quantity(one, runs.model.system.unit_of("m")) for one in (stated, start))
     return (

@@ -97,3 +97,10 @@ def test_a_start_far_from_the_stated_amplitude_is_said(tmp_path, said, start, fa
     run = ["task=simulate", "simulator=oscillator", "family=none", f"simulator.initial_displacement={start}"]
     assert main([*run, "simulator.n_samples=100", "progress=false", f"hydra.run.dir={tmp_path / 'run'}"]) == 0
     assert ("that of simulator.amplitude, 1 m; the motion begins at 1 mm" in said()) == far
+
+
+@pytest.mark.parametrize(("amplitude", "far"), [("0.015", False), ("1", True)])
+def test_tests_far_from_the_stated_amplitude_are_said(tmp_path, said, amplitude, far):
+    """`simulate` said it, and a plan with amplitudes of its own did not."""
+    made(tmp_path / "run", f"simulator.amplitude={amplitude}")
+    assert ("that of the rig's amplitude, 1 m; the tests begin at 0.01 m … 0.02 m, and a damping" in said()) == far
