@@ -11,6 +11,7 @@ from gear_damping.config.source import ORDER, Origin
 from gear_damping.errors import InputError, nearest
 from gear_damping.identification.test_plan.asked import PlanCosts, PlanGoal, PlannedSensor, PlannedTests, Unknown
 from gear_damping.identification.test_plan.channels import channels_of
+from gear_damping.physics.article import with_article
 from gear_damping.physics.parameter import Parameter
 from gear_damping.schema.values import Flag, Given, Number, Text
 from gear_damping.units import spoken
@@ -145,7 +146,9 @@ def _sensor(reader: Reader, name: str, node: Any, simulator: SimulatorSettings) 
     sees = found["channel"] or name
     if sees not in channels:
         key = prefix + "channel" if found["channel"] else prefix[:-1]
-        reader.refuse(key, f"sees no channel of a {simulator.model.system.name}", sees, nearest(sees, list(channels)))
+        reader.refuse(
+            key, f"sees no channel of {with_article(simulator.model.system.name)}", sees, nearest(sees, list(channels))
+        )
         return None
     noise = {"noise": Parameter("noise", channels[sees], None, "standard deviation of its noise", 0, 1e300)}
     for key in node:

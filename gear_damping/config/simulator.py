@@ -12,6 +12,7 @@ from gear_damping.config.quantities import split_suffix
 from gear_damping.config.reader import Reader
 from gear_damping.config.source import COMMAND_LINE, Origin
 from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.physics.article import with_article
 from gear_damping.physics.catalogue import catalogue, system_catalogue
 from gear_damping.physics.model import Model
 from gear_damping.physics.parameter import Parameter
@@ -106,7 +107,9 @@ def read_simulator(node: Mapping[str, Any], family: Mapping[str, Any], origin: O
     if system_class is None:
         raise InputError(reader.problems)
     if group := _of_another_system(plain["system"], origin):
-        reader.refuse("simulator.system", f"stands beside the parameters of a {group}", plain["system"], OTHER_GROUP)
+        reader.refuse(
+            "simulator.system", f"stands beside the parameters of {with_article(group)}", plain["system"], OTHER_GROUP
+        )
         raise InputError(reader.problems)
     options = {option.name for option in system_class.options}
     chosen = _unit_unknown(node, options) | {key: value for key, value in node.items() if key in options}

@@ -14,6 +14,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.identification.angle_steps import between_steps
 from gear_damping.identification.output_error.records import Filter, FitRecord, FreeParameter, Observed
 from gear_damping.measurement.record import Channel, Measurement, Quantity, Record
+from gear_damping.physics.article import with_article
 from gear_damping.physics.systems.base import System
 from gear_damping.physics.systems.oscillator import Oscillator
 
@@ -76,7 +77,7 @@ def fitted_names(record: Record, system: type[System]) -> tuple[str, ...]:
     """
     names = response_names(record, system)
     if not names:
-        rule, remedy = f"no response of a {system.name}", f"declare one of {', '.join(system.responses)}"
+        rule, remedy = f"no response of {with_article(system.name)}", f"declare one of {', '.join(system.responses)}"
         raise InputError(Problem(f"{record.name}.channels", rule, remedy=remedy, source=str(record.file)))
     return names
 

@@ -2,8 +2,9 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
-from math import inf
+from math import inf, isfinite
 from numbers import Number as AnyNumber
+from numbers import Real as AnyReal
 from os import PathLike
 from pathlib import Path
 from typing import Any, get_args
@@ -15,10 +16,12 @@ from gear_damping.at_home import at_home
 from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.explain import Listener
 from gear_damping.measurement.record import Measurement
+from gear_damping.physics.article import with_article
 from gear_damping.schema.values import Flag, Given, Number, OneOf, Problems
 from gear_damping.simulation.solver_settings import Engine, Solver
 
 COUNT = Number(1, whole=True)  # of what there has to be one at least
+SEED = Number(0, 2**63 - 1, whole=True)  # what a generator of 64 bits takes
 SOLVER = {
     "accuracy": Number(0, 1, exclusive=True),
     "substeps": Given(COUNT, optional=True),
@@ -47,7 +50,9 @@ def refuse_other_kind(name: str, value: object, kind: type, example: str) -> Non
         InputError: it is one.
     """
     if value is not None and not isinstance(value, kind):
-        raise InputError(Problem(name, f"must be a {kind.__name__}", repr(value), f"for example {name}={example}"))
+        raise InputError(
+            Problem(name, f"must be {with_article(kind.__name__)}", repr(value), f"for example {name}={example}")
+        )
 
 
 def refuse_other_solver(solver: object) -> None:
@@ -65,6 +70,8 @@ def refuse_other_solver(solver: object) -> None:
             wrong = error.problems[0]
             problems.append(Problem(f"solver.{name}", wrong.rule, wrong.value, wrong.remedy))
     problems.raise_any()
+    if isinstance(solver, Solver):
+        refuse_other_call("solver.progress", solver.progress)
 
 
 def refuse_other_call(name: str, value: object) -> None:
@@ -96,6 +103,32 @@ def refuse_other_name(argument: str, given: object, example: str) -> None:
     """
     if given is not None and not (isinstance(given, str) and given):
         raise InputError(Problem(argument, "must be a name", given, f"for example {argument}='{example}'"))
+
+
+def refuse_no_flag(name: str, value: object) -> None:
+    """Refuse what is neither true nor false, as a text, which Python would take for true.
+
+    Raises:
+        InputError: it is none.
+    """
+    if not isinstance(plain(value), bool):
+        raise InputError(Problem(name, "must be True or False", value, f"write {name}=True or {name}=False"))
+
+
+def refuse_no_level(name: str, value: object) -> None:
+    """Refuse what is no single level of a noise.
+
+    Raises:
+        InputError: it is several, no number, or no finite one.
+    """
+    own, remedy = plain(value), f"ask once for each, for example {name}=30"
+    if isinstance(own, bool | str) or own is None:
+        raise InputError(Problem(name, "must be a number in dB", own, f"for example {name}=30"))
+    if not isinstance(own, AnyReal):
+        raise InputError(Problem(name, "is one level", repr(own), remedy))
+    if not isfinite(own):
+        rule = "must be finite, in dB: of no noise, or of one without end, nothing is worked out"
+        raise InputError(Problem(name, rule, own, f"for example {name}=30"))
 
 
 def file_path(argument: str, given: Any, what: str) -> Path:

@@ -8,10 +8,13 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.cramer_rao import cramer_rao
-from gear_damping.interface.arguments import names, numbers, of_every_run
+from gear_damping.interface.arguments import names, numbers, of_every_run, plain, refuse_no_level
 from gear_damping.interface.simulated import Simulation, refuse_other_runs, refuse_rest
 from gear_damping.physics.damping_ratio import DAMPING_RATIO
-from gear_damping.schema.values import Problems
+from gear_damping.schema.values import Number, Problems
+from gear_damping.simulation.sampling import whole_number_problems
+
+SAMPLES = Number(whole=True)  # a count; how many there are is said with those of the record
 
 
 def bound(
@@ -47,11 +50,34 @@ def bound(
         raise InputError(Problem("noise", rule, repr(noise), remedy))
     if noise is None and snr_db is None:
         raise InputError(Problem("noise", "one of noise and snr_db is needed", noise, "for example snr_db=30"))
-    if snr_db is not None and not isinstance(snr_db, Real):
-        raise InputError(Problem("snr_db", "is one level", repr(snr_db), "ask once for each, for example snr_db=30"))
+    if snr_db is not None:
+        refuse_no_level("snr_db", snr_db)
+    if samples is not None:
+        Problems(whole_number_problems("samples", samples, SAMPLES)).raise_any()
+    expected = _expected(expected)
     refuse_rest(runs.runs)
     response = runs.runs.response
     level = numbers("noise", noise) if snr_db is None else response.std(-1) * 10 ** (-snr_db / 20)
     Problems(of_every_run("noise", level, len(response))).raise_any()
     found = cramer_rao(runs.runs, names("free", free), level, expected=expected, samples=samples)
     return {name: found.deviation(name).numpy() for name in found.names}
+
+
+def _expected(given: object) -> dict[str, float] | None:
+    """Standard deviations of what is known beforehand, as plain numbers.
+
+    Raises:
+        InputError: it says not of which parameter it is, or one is no number.
+    """
+    if given is None:
+        return None
+    if not isinstance(given, Mapping):
+        rule, remedy = "must say how well which parameter is known", "for example expected={'stiffness': 10.0}"
+        raise InputError(Problem("expected", rule, repr(given), remedy))
+    problems = [
+        Problem(f"expected.{name}", "must be one number, a standard deviation", repr(value), "give it in SI")
+        for name, value in given.items()
+        if not isinstance(plain(value), Real) or isinstance(plain(value), bool)
+    ]
+    Problems(problems).raise_any()
+    return {name: float(value) for name, value in given.items()}

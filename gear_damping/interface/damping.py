@@ -19,6 +19,7 @@ from gear_damping.interface.damping_law import damping_law
 from gear_damping.interface.estimator import Prediction, all_recorded, made
 from gear_damping.interface.identified import Identification, refuse_faults
 from gear_damping.measurement.record import Channel, Measurement, Record
+from gear_damping.physics.article import with_article
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.reporting import figures
 from gear_damping.reporting.figures.axis_names import axis
@@ -192,7 +193,7 @@ def _by_name(laws: Any) -> Mapping[str, Any]:
     if laws is None or isinstance(laws, Mapping):
         return laws or {}
     remedy = "write laws={'explained': what gd.identify(record, model) found}"
-    raise InputError(Problem("laws", f"must be named, and is a {type(laws).__name__}", remedy=remedy))
+    raise InputError(Problem("laws", f"must be named, and is {with_article(type(laws).__name__)}", remedy=remedy))
 
 
 def _settings_of(name: str, given: Any) -> Settings:

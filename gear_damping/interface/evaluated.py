@@ -21,7 +21,7 @@ from gear_damping.identification.known_model.estimate import Estimates
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.seeding import seeded_generator
-from gear_damping.interface.arguments import levels
+from gear_damping.interface.arguments import levels, refuse_no_flag
 from gear_damping.interface.estimator import ClassicalEstimator, Estimator, NetworkEstimator
 from gear_damping.interface.simulated import Simulation, refuse_other_runs, refuse_rest
 from gear_damping.physics.damping_ratio import DAMPING_RATIO
@@ -92,6 +92,7 @@ def evaluate(
         raise InputError(Problem("estimators", "none is named", {}, "for example {'mine': gd.load_estimator(PATH)}"))
     refuse_other_runs(runs)
     Problems(whole_number_problems("seed", seed, SEED)).raise_any()
+    refuse_no_flag("bound", bound)
     seed = int(seed)
     _require_alike(estimators, runs)
     refuse_rest(runs.runs)

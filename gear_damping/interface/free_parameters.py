@@ -51,9 +51,9 @@ def free_parameters(
         uncertainty: Relative standard deviation of what is not known exactly, by the file's names.
 
     Raises:
-        InputError: a name is unknown, or a free parameter begins at zero.
+        InputError: a name is unknown, a parameter is named in two ways, or a free one begins at zero.
     """
-    declared, problems = model.parameters(), []
+    declared, problems = model.parameters(), _named_twice(model, names)
     uncertain = {FLAT.get(name, name): relative for name, relative in uncertainty.items() if relative}
     found: dict[str, FreeParameter] = {}
     for name in (*names, *(n for n in uncertain if n in declared and n not in names and _has_size(given.get(n, 0.0)))):
@@ -77,6 +77,15 @@ def free_parameters(
     if problems:
         raise InputError(problems)
     return tuple(_expected(one, stated, uncertain) for one in found.values())
+
+
+def _named_twice(model: Model, names: Sequence[str]) -> list[Problem]:
+    """The coefficient of the one damping law, where it is named by itself and by the damping ratio."""
+    coefficient = model.damping_coefficient
+    if DAMPING_RATIO not in names or coefficient not in names or DAMPING_RATIO in model.parameters():
+        return []
+    rule = f"names one parameter twice: {DAMPING_RATIO} stands for {coefficient}"
+    return [Problem("free", rule, list(names), "name one of the two")]
 
 
 def _has_size(value: float | tuple[float, ...] | None) -> bool:

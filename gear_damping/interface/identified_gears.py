@@ -31,6 +31,7 @@ from gear_damping.interface.far_from_stated import far_from_stated
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.interface.own_start import own_start
 from gear_damping.measurement.record import Measurement
+from gear_damping.physics.article import with_article
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.reporting import figures, tables
@@ -82,7 +83,7 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
     _refuse_casing(measurement)
     evidence = at_useful_rate(evidence_of(measurement, holds_out=not measurement.base.has(Trait.REST)))
     if model.system.name != evidence.system:
-        rule = f"is a {model.system.name}, the records are those of a {evidence.system}"
+        rule = f"is {with_article(model.system.name)}, the records are those of {with_article(evidence.system)}"
         raise InputError(Problem("model", rule, remedy="give a model of the measured system"))
     evidence, noise = with_noise(replace(evidence, segments=evidence.stated_segments), measurement, log)
     start = own_start(model, evidence, free)

@@ -12,7 +12,7 @@ from gear_damping.identification.test_plan.plan import Asked, TestPlan, ToldTest
 from gear_damping.identification.test_plan.repeated import Repeated, repeat
 from gear_damping.identification.test_plan.rig import Rig
 from gear_damping.interface import planned_page as page
-from gear_damping.interface.arguments import refuse_other_kind, refuse_other_solver
+from gear_damping.interface.arguments import SEED, refuse_no_flag, refuse_other_kind, refuse_other_solver
 from gear_damping.interface.planned_arguments import Handed
 from gear_damping.physics.model import Model
 from gear_damping.reporting.figures.test_plan import test_plan_figure
@@ -20,7 +20,7 @@ from gear_damping.schema.values import Number, Problems
 from gear_damping.simulation.sampling import whole_number_problems
 from gear_damping.simulation.solver_settings import Solver
 
-TIMES, SEED = Number(whole=True), Number(0, 2**63 - 1, whole=True)  # a count; what a generator of 64 bits takes
+TIMES = Number(whole=True)  # how often: a count, that of none is refused with what it is for
 
 
 class Plan:
@@ -97,6 +97,7 @@ class Plan:
             InputError: nothing is promised for it, or the count is none.
         """
         refuse_other_kind("of", of, ToldTest, "plan.best")
+        refuse_no_flag("joint", joint)
         Problems(whole_number_problems("count", count, TIMES) + whole_number_problems("seed", seed, SEED)).raise_any()
         return repeat(self.found, of or self.cheapest or self.best, count, joint=joint, seed=seed)
 

@@ -2,13 +2,15 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, replace
+from math import isfinite
 from numbers import Integral, Real
 from typing import Any
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.test_plan.asked import PlanCosts, PlanGoal, PlannedSensor, PlannedTests, Unknown
 from gear_damping.identification.test_plan.channels import channels_of
-from gear_damping.interface.arguments import refuse_other_kind
+from gear_damping.interface.arguments import refuse_no_flag, refuse_other_kind
+from gear_damping.physics.article import with_article
 from gear_damping.physics.model import Model
 from gear_damping.schema.values import Problems
 from gear_damping.simulation.sampling import SAMPLING_RATE
@@ -46,7 +48,11 @@ class Handed:
             "noise": given.noise if unit is None else self._number(f"{key}.noise", given.noise, unit, optional=True),
             "snr_db": self._number(f"{key}.snr_db", given.snr_db, "dB", optional=True),
             "cost": self._number(f"{key}.cost", given.cost, ""),
+            "offset": self._flag(f"{key}.offset", given.offset),
         }
+        if found["snr_db"] is not None and not isfinite(found["snr_db"]):
+            remedy = "for example 30; without noise every test tells all"
+            self.problems.append(Problem(f"{key}.snr_db", "must be a finite level in dB", found["snr_db"], remedy))
         found["noise"] = (
             found["noise"] if isinstance(found["noise"], float | None) else 1.0
         )  # of no channel, as is said
@@ -61,7 +67,8 @@ class Handed:
         unit = "" if declared is None else self.system.unit_of(declared.unit)
         said = None if declared is None else given.deviation  # that there is no such parameter is said later
         deviation = self._number(f"{key}.deviation", said, unit, optional=True)
-        return replace(given, deviation=deviation, percent=self._number(f"{key}.percent", given.percent, "%", True))
+        percent, each = self._number(f"{key}.percent", given.percent, "%", True), self._flag(f"{key}.each", given.each)
+        return replace(given, deviation=deviation, percent=percent, each=each)
 
     def goal(self, given: object) -> PlanGoal:
         """A goal with numbers alone."""
@@ -77,7 +84,8 @@ class Handed:
             one.name: self._number(f"plan.cost.{one.name}", getattr(given.costs, one.name), "")
             for one in fields(PlanCosts)
         }
-        return replace(given, **found, **counts, costs=PlanCosts(**costs))
+        joint = self._flag("plan.joint", given.joint)
+        return replace(given, **found, **counts, joint=joint, costs=PlanCosts(**costs))
 
     def each(self, key: str, given: Any, alone: type | tuple[type, ...], read: Callable[[object], Any]) -> tuple:
         """What is made of each of a list, or of one that stands alone."""
@@ -93,6 +101,13 @@ class Handed:
             return int(value)
         self.problems.append(Problem(key, "must be a whole number", _shown(value), "for example 2"))
         return None
+
+    def _flag(self, key: str, value: object) -> bool:
+        """True or false; False, noted, for what is neither."""
+        with self.problems.collecting():
+            refuse_no_flag(key, value)
+            return bool(value)
+        return False
 
     def _list(self, key: str, given: Any, unit: str) -> tuple | float | None:
         unit = self.system.unit_of(unit)
@@ -124,7 +139,9 @@ def _refuse_other(name: str, value: object, kind: type, example: str) -> None:
         InputError: it is one.
     """
     if not isinstance(value, kind):
-        raise InputError(Problem(name, f"must be a {kind.__name__}", repr(value), f"for example {name}={example}"))
+        raise InputError(
+            Problem(name, f"must be {with_article(kind.__name__)}", repr(value), f"for example {name}={example}")
+        )
 
 
 def _shown(value: object) -> object:

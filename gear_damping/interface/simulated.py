@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.interface.arguments import numbers, of_every_run, refuse_other_solver
+from gear_damping.interface.arguments import SEED, numbers, of_every_run, refuse_other_solver
+from gear_damping.physics.article import with_article
 from gear_damping.physics.model import Model
 from gear_damping.reporting import figures
 from gear_damping.schema.values import Number, Problems
@@ -95,8 +96,16 @@ class Simulation:
             raise AttributeError(f"no channel '{name}'; there are {', '.join(self.names)}") from error
 
     def recorded(self, seed: int = 0) -> Array:
-        """The response behind the model's sensors, noise included, (batch, time)."""
-        return self.runs.record(torch.Generator().manual_seed(seed)).numpy()
+        """The response behind the model's sensors, noise included, (batch, time).
+
+        Args:
+            seed: Of the noise, 0 or more.
+
+        Raises:
+            InputError: it is none.
+        """
+        Problems(whole_number_problems("seed", seed, SEED)).raise_any()
+        return self.runs.record(torch.Generator().manual_seed(int(seed))).numpy()
 
     def cwt(
         self,
@@ -117,12 +126,12 @@ class Simulation:
             Coefficients (batch, frequencies, time), and the frequencies in Hz.
 
         Raises:
-            ValueError: there is no such wavelet, or a frequency is out of range.
+            ValueError: there is no such wavelet or channel (an InputError), or a frequency is out of range.
         """
-        known = builtin_wavelets()
-        if isinstance(wavelet, str) and wavelet not in known:
-            raise ValueError(f"no wavelet '{wavelet}'; choose one of {', '.join(known)}")
-        kind = known[wavelet] if isinstance(wavelet, str) else wavelet
+        kind = _wavelet(wavelet)
+        if channel is not None and not (isinstance(channel, str) and self._has(channel)):
+            remedy = f"choose one of {', '.join(self.names)}"
+            raise InputError(Problem("channel", "the runs have no such channel", channel, remedy))
         if frequencies_hz is None:
             lowest, highest = LOWEST / len(self.runs.time), HIGHEST
             if lowest >= highest:
@@ -133,6 +142,13 @@ class Simulation:
         transform = kind(self.sampling_rate, frequencies_hz=frequencies_hz)
         signal = self.runs.channel(channel or self.model.system.response)
         return transform(signal).numpy(), np.asarray(frequencies_hz)
+
+    def _has(self, channel: str) -> bool:
+        try:
+            self.runs.channel(channel)
+        except KeyError:
+            return False
+        return True
 
     def plot(self, run: int = 0) -> Figure:
         """One run, counted from 0, over time, its spectrum (in orders where there is a shaft), and its phase plane.
@@ -150,6 +166,22 @@ class Simulation:
         samples, seconds = len(self.runs.time), len(self.runs.time) / self.sampling_rate
         lost = f", {self.runs.n_diverged} diverged" if self.runs.n_diverged else ""
         return f"<{len(self)} runs of {samples} samples, {seconds:.4g} s at {self.sampling_rate:g} Hz{lost}>"
+
+
+def _wavelet(asked: object) -> type[ContinuousWavelet]:
+    """The class of a wavelet.
+
+    Raises:
+        InputError: there is none of this name, or it is no class of one.
+    """
+    known = builtin_wavelets()
+    if isinstance(asked, str) and asked in known:
+        return known[asked]
+    if isinstance(asked, type) and issubclass(asked, ContinuousWavelet):
+        return asked
+    rule = f"no wavelet '{asked}'" if isinstance(asked, str) else "is no wavelet"
+    remedy = f"choose one of {', '.join(known)}, or give a class of signals.wavelets.ContinuousWavelet"
+    raise InputError(Problem("wavelet", rule, repr(asked), remedy))
 
 
 def simulate(
@@ -207,7 +239,9 @@ def refuse_other_runs(runs: object) -> None:
     """
     if not isinstance(runs, Simulation):
         remedy = "give what gd.simulate(model, sampling_rate=…, n_samples=…) returns"
-        raise InputError(Problem("runs", f"must be a simulation, and is a {type(runs).__name__}", remedy=remedy))
+        raise InputError(
+            Problem("runs", f"must be a simulation, and is {with_article(type(runs).__name__)}", remedy=remedy)
+        )
 
 
 def refuse_rest(runs: Runs) -> None:
@@ -234,12 +268,23 @@ def _driven(inputs: Any) -> Driven:
         return inputs
     if inputs is None or isinstance(inputs, Mapping):
         return Driven(inputs or {})
-    rule, remedy = f"must say which series is which, and is a {type(inputs).__name__}", "write {'force': ARRAY}"
+    rule, remedy = (
+        f"must say which series is which, and is {with_article(type(inputs).__name__)}",
+        "write {'force': ARRAY}",
+    )
     raise InputError(Problem("inputs", rule, remedy=remedy))
 
 
 def _within_bounds(model: Model, values: Mapping[str, ArrayLike], batch: int) -> dict[str, torch.Tensor]:
-    """Values as tensors; the model itself refuses names that it does not know."""
+    """Values as tensors; the model itself refuses names that it does not know.
+
+    Raises:
+        InputError: a value is none, or out of range.
+    """
+    if grouped := [name for name, value in values.items() if isinstance(value, Mapping)]:
+        rule = "is a mapping, and every parameter is a keyword argument of its own"
+        remedy = f"write gd.simulate(model, …, **{grouped[0].upper()}), or for example stiffness=400.0"
+        raise InputError(Problem(grouped[0], rule, remedy=remedy))
     found, declared = {name: numbers(name, value) for name, value in values.items()}, model.parameters()
     single = [(name, value) for name, value in found.items() if name in declared and not declared[name].vector]
     problems = [problem for name, value in single for problem in of_every_run(name, value, batch)]

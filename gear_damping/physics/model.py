@@ -7,6 +7,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.physics.article import with_article
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.systems.base import System
@@ -204,7 +205,7 @@ def _composition_problems(system: System, effects: Sequence[Effect]) -> list[Pro
     meshes = sum(isinstance(effect, MeshStiffness) for effect in effects)
     wanted = 1 if system.has(Trait.TEETH) else 0
     if meshes != wanted:
-        rule = f"a {system.name} has {wanted} mesh stiffness, here there are {meshes}"
+        rule = f"{with_article(system.name)} has {wanted} mesh stiffness, here there are {meshes}"
         problems.append(Problem("simulator.mesh_stiffness", rule, remedy="choose one form of mesh stiffness"))
     for kind, does in ALONE.items():
         found = [effect.name for effect in effects if isinstance(effect, kind)]

@@ -3,6 +3,7 @@
 import torch
 from torch import Tensor
 
+from gear_damping.physics.article import with_article
 from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.model import Prepared
 from gear_damping.physics.systems.traits import Trait
@@ -39,7 +40,9 @@ def shaft_motion(runs: Runs) -> dict[str, Tensor]:
         ValueError: the model is not a gear pair.
     """
     if not runs.model.system.has(Trait.SHAFTS):
-        raise ValueError(f"shaft_motion needs a gear_pair, this is a {runs.model.system.name}: it has no shafts")
+        raise ValueError(
+            f"shaft_motion needs a gear_pair, this is {with_article(runs.model.system.name)}: it has no shafts"
+        )
     moves = ACCELERATION in runs.states
     names = [PINION_SPEED, GEAR_SPEED, *([PINION_ACCELERATION, GEAR_ACCELERATION] if moves else [])]
     return {name: motion_of_shaft(runs, name) for name in names}

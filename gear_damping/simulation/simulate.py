@@ -7,6 +7,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.physics.article import with_article
 from gear_damping.physics.equation import HELD_LOAD
 from gear_damping.physics.model import Model, Prepared
 from gear_damping.physics.terms import HeldLoad, Sensor
@@ -103,7 +104,11 @@ def _is_alone(model: Model, values: Mapping[str, Tensor]) -> bool:
 def _check_inputs(model: Model, inputs: Mapping[str, Tensor], shape: tuple[int, int]) -> None:
     known = model.system.inputs
     problems = [
-        Problem(f"inputs.{name}", f"a {model.system.name} takes no such series", remedy=f"it takes {', '.join(known)}")
+        Problem(
+            f"inputs.{name}",
+            f"{with_article(model.system.name)} takes no such series",
+            remedy=f"it takes {', '.join(known)}",
+        )
         for name in inputs.keys() - known.keys()
     ]
     problems += [

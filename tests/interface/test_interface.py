@@ -214,7 +214,7 @@ def test_what_cannot_be_free_is_said(record, free, said):
     model = gd.Model(gd.Oscillator(), [gd.ViscousDamping(), gd.CubicStiffness(coefficient=0.0)])
     with pytest.raises(gd.InputError, match=said):
         gd.identify(record, model, free=free)
-    with pytest.raises(gd.InputError, match="is a gear_pair, the records are those of a oscillator"):
+    with pytest.raises(gd.InputError, match="is a gear_pair, the records are those of an oscillator"):
         gd.identify(record, rig(), free=["pinion_speed"])
     with pytest.raises(gd.InputError, match="give the model too"):
         gd.identify(record, free=["stiffness"])

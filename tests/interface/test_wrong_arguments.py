@@ -169,6 +169,14 @@ def test_what_no_run_can_begin_with_is_answered(given, said):
         ({"noise": "0.1 mm"}, r"noise = '0\.1 mm': must hold numbers alone"),
         ({"samples": -5}, r"samples = -5: .*; remedy: leave it out"),
         ({"samples": 0}, r"samples = 0: must lie within"),
+        ({"samples": 100.5}, r"^- samples = 100\.5: must be a whole number"),
+        ({"samples": "100"}, r"^- samples = '100': must be a whole number"),
+        ({"expected": [1]}, r"expected = '\[1\]': must say how well which parameter is known; .*\{'stiffness': 10"),
+        ({"expected": {"stiffness": "a"}}, r"expected\.stiffness = \"'a'\": must be one number"),
+        ({"noise": None, "snr_db": True}, r"snr_db = True: must be a number in dB; .* snr_db=30"),
+        ({"noise": None, "snr_db": "30"}, r"snr_db = '30': must be a number in dB"),
+        ({"noise": None, "snr_db": np.inf}, r"^- snr_db = inf: must be finite, in dB"),
+        ({"noise": None, "snr_db": np.nan}, r"^- snr_db = nan: must be finite, in dB"),
     ],
 )
 def test_a_bound_of_what_has_none_is_answered(runs, given, said):
@@ -256,6 +264,15 @@ def test_a_plan_takes_arrays_and_quantities(said):
         ({"goal": gd.PlanGoal(percent=0.1, repeats=2.5)}, "plan.repeats = 2.5: must be a whole number"),
         ({"goal": gd.PlanGoal(costs=gd.PlanCosts(per_test="a"))}, "plan.cost.per_test = 'a': must be a number"),
         ({"unknown": 3}, "unknown = '3': must be a list"),
+        ({"unknown": [3]}, "unknown = '3': must be an Unknown"),
+        ({"sensor": gd.PlannedSensor("displacement", noise=1e-4, offset="no")},
+         "plan.sensors.displacement.offset = 'no': must be True or False"),
+        ({"sensor": gd.PlannedSensor("displacement", snr_db=float("nan"))},
+         "plan.sensors.displacement.snr_db = nan: must be a finite level in dB"),
+        ({"sensor": gd.PlannedSensor("displacement", snr_db=float("inf"))},
+         "plan.sensors.displacement.snr_db = inf: must be a finite level in dB"),
+        ({"goal": gd.PlanGoal(joint="no")}, "plan.joint = 'no': must be True or False"),
+        ({"unknown": [gd.Unknown("stiffness", each=1)]}, "plan.unknown.stiffness.each = 1: must be True or False"),
     ],
 )  # fmt: skip
 def test_what_is_no_plan_is_answered(said, told):
@@ -406,6 +423,8 @@ def test_an_argument_of_a_wrong_type_is_named(record, ask, said):
         ({"seed": -1}, r"seed = -1: must be at least 0"),
         ({"snr_db": np.nan}, r"snr_db = nan: must be levels in dB; .* snr_db=30"),
         ({"snr_db": []}, r"snr_db = \[\]: names no level"),
+        ({"bound": "no"}, r"bound = 'no': must be True or False"),
+        ({"bound": 1}, r"bound = 1: must be True or False"),
     ],
 )
 def test_noise_that_cannot_be_drawn_is_answered(runs, given, said):
@@ -478,6 +497,49 @@ def test_one_frequency_of_a_transform_is_one(runs):
     np.testing.assert_array_equal(coefficients, runs.cwt(frequencies_hz=[4.0])[0])
     with pytest.raises(gd.InputError, match="frequencies_hz = '4 Hz': must hold numbers alone"):
         runs.cwt(frequencies_hz="4 Hz")
+
+
+@pytest.mark.parametrize("seed", ["a", 1.5, None, -1, True])
+def test_a_seed_of_the_noise_that_is_recorded_is_a_whole_number(seed, runs):
+    """Text and fractions were errors of the generator, and -1 was taken."""
+    with pytest.raises(gd.InputError, match=r"^- seed( = .*)?: must .*; remedy: "):
+        runs.recorded(seed)
+    assert runs.recorded(np.int64(3)).shape == runs.displacement.shape
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (
+            {"channel": "vel"},
+            r"^- channel = 'vel': the runs have no such channel; remedy: choose one of displacement, vel",
+        ),
+        ({"channel": 3}, r"^- channel = 3: the runs have no such channel"),
+        ({"wavelet": 3}, r"^- wavelet = '3': is no wavelet; remedy: choose one of morlet, ricker, or give a class"),
+        ({"wavelet": dict}, r"^- wavelet = .*: is no wavelet"),
+    ],
+)
+def test_what_cannot_be_transformed_is_answered(given, said, runs):
+    with pytest.raises(gd.InputError, match=said):
+        runs.cwt(**given)
+
+
+def test_what_is_told_of_the_progress_can_be_called():
+    with pytest.raises(gd.InputError, match=r"solver\.progress = 3: must be a function"):
+        gd.simulate(MODEL, **SAMPLED, solver=gd.Solver(progress=3))
+
+
+def test_parameters_are_keyword_arguments():
+    with pytest.raises(gd.InputError, match=r"^- parameters: is a mapping, .*keyword argument.*\*\*PARAMETERS"):
+        gd.simulate(MODEL, **SAMPLED, parameters={"stiffness": 1e4})
+
+
+def test_one_parameter_in_two_names_is_refused(record, runs):
+    free = ["damping_ratio", "viscous_damping.damping_coefficient"]
+    with pytest.raises(gd.InputError, match=r"free = \[.*\]: names one parameter twice"):
+        gd.bound(runs, free, snr_db=30)
+    with pytest.raises(gd.InputError, match=r"^- free = \[.*\]: names one parameter twice: damping_ratio stands for"):
+        gd.identify(record, MODEL, free=free)
 
 
 @pytest.mark.parametrize("run", [1, -1, 0.5, "0"])

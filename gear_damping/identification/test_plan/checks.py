@@ -8,6 +8,7 @@ from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.identification.test_plan.asked import PlanCosts, PlanGoal, PlannedSensor, PlannedTests, Unknown
 from gear_damping.identification.test_plan.channels import channels_of
 from gear_damping.identification.test_plan.rig import Rig
+from gear_damping.physics.article import with_article
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import HeldLoad
@@ -118,7 +119,7 @@ def _of_sensors(rig: Rig, sensors: Sequence[PlannedSensor]) -> Iterator[Problem]
         key = f"plan.sensors.{sensor.name}"
         if sensor.sees not in known:
             end = ".channel" if sensor.channel else ""
-            yield Problem(key + end, f"no channel of a {rig.model.system.name}", sensor.sees,
+            yield Problem(key + end, f"no channel of {with_article(rig.model.system.name)}", sensor.sees,
                           nearest(sensor.sees, list(known)))  # fmt: skip
         if (sensor.noise is None) == (sensor.snr_db is None):
             rule = "needs its noise: one of noise and snr_db"
