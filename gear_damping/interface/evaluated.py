@@ -83,7 +83,8 @@ def evaluate(
         seed: Of the noise.
 
     Raises:
-        InputError: no estimator is named, nothing moves, or a network was trained on another kind of record.
+        InputError: no estimator is named, nothing moves, the runs have no damping ratio, or a network was trained on
+            another kind of record.
     """
     if not isinstance(estimators, Mapping):
         rule, remedy = "must be named", "for example {'mine': gd.load_estimator(PATH)}"
@@ -96,6 +97,7 @@ def evaluate(
     seed = int(seed)
     _require_alike(estimators, runs)
     refuse_rest(runs.runs)
+    _refuse_without_ratio(runs.runs)
     signals = runs.runs.response
     found = {}
     for snr in levels("snr_db", snr_db):
@@ -104,6 +106,22 @@ def evaluate(
         limit = _limit(runs.runs, noise) if bound and snr < CLEAN else None
         found[f"{snr:g}"] = _level(estimators, runs.runs, signals + noise[:, None] * drawn, limit)
     return Evaluation({"test_runs": len(runs), "snr_db": found})
+
+
+def _refuse_without_ratio(runs: Runs) -> None:
+    """Refuse runs of which no damping ratio is true.
+
+    Raises:
+        InputError: it says which law has none, or that there is none.
+    """
+    by_law = runs.damping_ratio_by_law
+    nameless = [name for name, ratio in by_law.items() if not bool(ratio.isfinite().all())]
+    if by_law and not nameless:
+        return
+    lacking = f"{' and '.join(nameless)} has none that could be worked out" if by_law else "there is no damping law"
+    rule = f"have no damping ratio that an answer could be held to: {lacking}"
+    remedy = "give the model a damping law, a linear stiffness, and an amplitude that is that of the motion"
+    raise InputError(Problem("runs", rule, remedy=remedy))
 
 
 def _require_alike(estimators: Mapping[str, Estimator], runs: Simulation) -> None:

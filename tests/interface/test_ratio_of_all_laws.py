@@ -90,3 +90,20 @@ def test_estimators_are_held_to_all_laws_and_networks_to_what_they_learn(with_fr
     found = gd.evaluate({"network": network, "other": other}, with_friction, snr_db=40).content["snr_db"]["40"]
     errors = {name: one["rmse_percent"] for name, one in found["estimators"].items()}
     assert errors == pytest.approx({"network": 0.0, "other": 0.0, "mean": 0.0}, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("effects", "said"),
+    [
+        (
+            [gd.ViscousDamping(), gd.HystereticDamping(yield_deflection=1e-9)],
+            "hysteretic_damping has none that could be",
+        ),
+        ([gd.CubicStiffness(coefficient=1.0)], "there is no damping law"),
+    ],
+)
+def test_runs_without_a_ratio_are_not_evaluated(effects, said):
+    system = gd.Oscillator(stiffness=STIFFNESS, amplitude=AMPLITUDE, initial_displacement=1e-9)
+    runs = gd.simulate(gd.Model(system, effects), sampling_rate=1000, n_samples=100)
+    with pytest.raises(gd.InputError, match=f"runs: have no damping ratio .*: {said}.*; remedy: give the model"):
+        gd.evaluate({"mine": gd.estimator("log_decrement")}, runs, snr_db=30)
