@@ -6,7 +6,7 @@ import pytest
 
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.trials import bench as benches
-from tests.explanation.decisions.made_up import NAMES, bench, fit
+from tests.explanation.decisions.made_up import NAMES, bench, fit, left
 
 SATURATION, POWER, CRACK = NAMES[9], NAMES[1], NAMES[11]
 
@@ -14,6 +14,7 @@ SATURATION, POWER, CRACK = NAMES[9], NAMES[1], NAMES[11]
 def tried(name, parameters, gain):
     one = fit(name, squares=1.0 / gain, gain=gain)
     one.outcome.hypothesis = SimpleNamespace(free=range(parameters))
+    one.outcome.is_finite = True
     return one
 
 
@@ -24,9 +25,13 @@ def named_first(monkeypatch):
     monkeypatch.setattr(benches, "contains", lambda *_: False)
     monkeypatch.setattr(benches.Bench, "_not_encompassed", lambda self, best, alike: list(alike))
     monkeypatch.setattr(benches.Bench, "_plain_form", lambda self, one, fits: one)
+    untold = []
+    monkeypatch.setattr(benches, "is_told", lambda outcome, refit, evidence: refit.name not in untold)
 
-    def first(*fits):
-        best, others = bench(SearchSettings()).simplest(max(fits, key=lambda one: one.gain), fits)
+    def first(*fits, of_any_size=()):
+        untold[:] = of_any_size
+        leaves = [(one.outcome, left(1.0)) for one in fits]
+        best, others = bench(SearchSettings(), leaves).simplest(max(fits, key=lambda one: one.gain), fits)
         assert {best.name, *others} == {one.name for one in fits}
         return best.name
 
@@ -48,3 +53,17 @@ def test_not_the_simpler_where_it_takes_far_less_and_records_are_few(named_first
     assert named_first(*with_scores(tried(POWER, 3, 0.68), tried(SATURATION, 2, 0.42))) == POWER
     three = with_scores(tried(POWER, 3, 0.68), tried(SATURATION, 2, 0.42), tried(CRACK, 2, 0.66))
     assert named_first(*three) == CRACK
+
+
+def test_one_of_any_size_comes_last(named_first):
+    """An arm in presliding took a second mode for its hysteresis, which was dropped after three more causes."""
+    fits = with_scores(tried(POWER, 3, 1.0), tried(SATURATION, 2, 0.97))
+    assert named_first(*fits, of_any_size=(SATURATION,)) == POWER
+    assert named_first(*fits, of_any_size=(SATURATION, POWER)) == SATURATION
+
+
+@pytest.mark.parametrize(("of_any_size", "first"), [((), SATURATION), ((SATURATION,), POWER)])
+def test_what_has_run_into_a_bound_gives_way_to_none_of_any_size(of_any_size, first, named_first):
+    fits = with_scores(tried(POWER, 2, 1.0), tried(SATURATION, 3, 0.97))
+    fits[0].is_at_bound = True
+    assert named_first(*fits, of_any_size=of_any_size) == first

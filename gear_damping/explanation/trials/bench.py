@@ -20,6 +20,7 @@ from gear_damping.explanation.statistics.paired import confirmation, paired_gain
 from gear_damping.explanation.trials.assess import Assessment, assessed
 from gear_damping.explanation.trials.refit import Refit, block_samples, chosen, compared, refitted, with_later
 from gear_damping.explanation.trials.score import Score, Scoring, contains, scores
+from gear_damping.explanation.trials.told_size import is_told
 from gear_damping.identification.output_error.least_squares import Ends, Fitted, Rounds
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.identification.output_error.uncertainty import QUANTILE
@@ -265,9 +266,19 @@ class Bench:
         outer = {f.name for f in alike if any(contains(f.score, o.score) for o in inner if o.name != f.name)}
         kept = self._not_encompassed(best, [f for f in alike if f.name not in outer] or alike)
         near = [f for f in kept if f.gain >= self.settings.rival_share * best.gain]
-        first = self._within_bounds(smallest(near or kept), fits)
+        first = self._within_bounds(smallest(self._sized(near or kept)), fits)
         plain = self._plain_form(first, fits)
         return plain, tuple(dict.fromkeys(f.name for f in kept if f.name not in (first.name, plain.name)))
+
+    def _sized(self, fits: Sequence[Refit]) -> Sequence[Refit]:
+        """Those of whose size the records tell anything; all where that is none of several.
+
+        One of any size would be dropped at the end, with what was named beside it.
+        """
+        return fits if len(fits) == 1 else [fit for fit in fits if self._is_sized(fit)] or fits
+
+    def _is_sized(self, fit: Refit) -> bool:
+        return fit.outcome.is_finite and is_told(fit.outcome, fit, self.evidence)
 
     def _plain_form(self, fit: Refit, fits: Sequence[Refit]) -> Refit:
         """A law, or the simpler one that it contains where it takes too little of what that leaves."""
@@ -330,13 +341,16 @@ class Bench:
         return False
 
     def _within_bounds(self, first: Refit, fits: Sequence[Refit]) -> Refit:
-        """The explanation, or where it has run into a bound and so stands in for another, the one that settles too."""
+        """The explanation, or where it has run into a bound and so stands in for another, the one that settles too.
+
+        Not for one of any size, which stands in for another as well.
+        """
         if not first.is_at_bound:
             return first
         others = [fit for fit in fits if fit.is_seen_in_fit and not fit.is_at_bound]
         near = [fit for fit in others if fit.gain >= self.settings.rival_share * first.gain]
         close = [fit for fit in others if self.excess(fit.outcome).misfit <= self.settings.settled_misfit]
-        return smallest(close or near or [first])
+        return smallest([fit for fit in close or near if self._is_sized(fit)] or [first])
 
 
 def smallest(fits: Sequence[Refit]) -> Refit:
