@@ -30,7 +30,7 @@ from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.calibrate import Calibration, calibrated, recalibrated
 from gear_damping.explanation.steps.confirm import Confirmed, confirmed
-from gear_damping.explanation.steps.each_alone import followed_one_by_one
+from gear_damping.explanation.steps.each_alone import of_each_record
 from gear_damping.explanation.steps.estimate import estimated
 from gear_damping.explanation.steps.never_dies import never_dies
 from gear_damping.explanation.steps.out_of_step import out_of_step
@@ -149,7 +149,7 @@ def _of_evidence(
     doubts = (
         out_of_step(found.state),
         never_dies(found.state),
-        followed_one_by_one(found.state),
+        of_each_record(found.state),
         contradicts_stated(found.state.outcome, evidence),
         torque_of_the_other_shaft(found.state.outcome, evidence),
         noise_above(found.state.bench.floor, rmse(found.state.outcome.fit_residuals), evidence.channel) or "",

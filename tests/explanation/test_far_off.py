@@ -13,7 +13,8 @@ from gear_damping.explanation.evidence.noise import NoiseLevel, Scatter
 from gear_damping.explanation.explain import explain
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
-from gear_damping.explanation.steps.each_alone import followed_one_by_one
+from gear_damping.explanation.steps.each_alone import HARDLY_ANY, followed_one_by_one, of_each_record
+from gear_damping.identification.oscillator.each_alone import LEAVES
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.load import load_measurement
 from gear_damping.physics.systems.oscillator import Oscillator
@@ -88,6 +89,26 @@ def test_parts_of_one_record_are_of_one_rig(monkeypatch):
 
     assert said("a", "a") == ""
     assert "1 Hz and 2 Hz" in said("a", "b")
+
+
+@pytest.mark.parametrize(
+    ("misfit", "is_lost", "leaves"),
+    [(30.0, False, HARDLY_ANY), (1.01, False, None), (1.01, True, LEAVES)],
+    ids=["more than the sensor makes", "no more than it makes", "one model loses a record"],
+)
+def test_records_of_two_states_are_told_where_one_model_loses_none(misfit, is_lost, leaves, monkeypatch):
+    """Two circuits of 1.90 and 2.18 % were consistent with one of 2 %, whose error looked like coloured noise."""
+    module, asked = "gear_damping.explanation.steps.each_alone", []
+    monkeypatch.setattr(f"{module}.alone_beside", lambda *given: asked.append(given[-1]) or {"a": None})
+    monkeypatch.setattr(f"{module}.is_begun_anew", lambda _: is_lost)
+    monkeypatch.setattr(f"{module}.said_of_each", lambda _: "1.9 % and 2.18 %")
+    fit = [FitRecord(name, WAVE, 100.0) for name in "ab"]
+    evidence = SimpleNamespace(fit=fit, has=Oscillator().has, has_spring=True)
+    bench = SimpleNamespace(evidence=evidence, solver=None, settings=SearchSettings())
+    found = SimpleNamespace(bench=bench, accepted=(), nominal=None)
+    found.beyond_sensor = lambda _: SimpleNamespace(misfit=misfit)
+    assert bool(of_each_record(found)) == (leaves is not None)
+    assert asked == ([] if leaves is None else [leaves])
 
 
 @pytest.mark.slow

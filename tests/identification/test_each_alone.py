@@ -41,6 +41,11 @@ def test_two_rigs_are_told_with_their_figures():
     assert said_of_each(found) == "2.4 Hz and 2 % in first, 1.9 Hz and 3 % in other"
 
 
+def test_two_dampings_are_told_too():
+    found = alone(record("first", 2.4, 0.019), record("other", 2.4, 0.022))
+    assert [one.damping_ratio_percent.value for one in found] == pytest.approx([1.9, 2.2], rel=0.02)
+
+
 def test_one_rig_is_not():
     assert alone(record("first", 2.4), record("other", 2.4)) == ()
 

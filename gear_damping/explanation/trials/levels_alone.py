@@ -8,7 +8,7 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import InitialValues
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.trials.score import Score
-from gear_damping.identification.oscillator.each_alone import Alone, each_alone
+from gear_damping.identification.oscillator.each_alone import LEAVES, Alone, each_alone
 from gear_damping.identification.oscillator.linear_model import DAMPING
 from gear_damping.identification.output_error.records import SEPARATOR, FitRecord
 from gear_damping.simulation.solver_settings import Solver
@@ -32,11 +32,13 @@ def levels_alone(
     return _begun(alone, score, outcome, str(spring)) if alone else None
 
 
-def alone_beside(outcome: Outcome, evidence: Evidence, solver: Solver | None = None) -> tuple[Alone, ...]:
-    """What each record says by itself, where that is what a model for all of them misses."""
+def alone_beside(
+    outcome: Outcome, evidence: Evidence, solver: Solver | None = None, leaves: float = LEAVES
+) -> tuple[Alone, ...]:
+    """What each record says by itself, where that is what a model for all of them misses, but for a share of it."""
     pairs = zip(evidence.fitted, outcome.fit_residuals, strict=True)
     left = sum(_of_first_channel(record, residual) for record, residual in pairs)
-    return each_alone(evidence.fit, left, evidence.known, solver)
+    return each_alone(evidence.fit, left, evidence.known, solver, leaves)
 
 
 def _begun(alone: tuple[Alone, ...], score: Score, outcome: Outcome, spring: str) -> InitialValues:

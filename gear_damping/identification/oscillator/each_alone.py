@@ -24,17 +24,19 @@ class Alone:
 
 
 def each_alone(
-    records: Sequence[FitRecord], left: float, known: Known, solver: Solver | None = None
+    records: Sequence[FitRecord], left: float, known: Known, solver: Solver | None = None, leaves: float = LEAVES
 ) -> tuple[Alone, ...]:
     """The natural frequency and the damping of every record by itself, where that is what one model for all misses.
 
-    Each record alone leaves half of what is left together or less, and the 95 % intervals of two frequencies lie apart.
+    The records alone leave a share of what is left together at most, half of it, and the 95 % intervals of two
+    frequencies, or of two damping ratios, lie apart.
 
     Args:
         records: Those that were fitted together.
         left: Sum of squares that they leave of their first channel together, each by its weight.
         known: What is stated of the rig.
         solver: Settings of the solver.
+        leaves: That share.
 
     Returns:
         One for each record; none where they are of one rig, are fewer than two or more than `MOST`, or have no spring.
@@ -45,15 +47,22 @@ def each_alone(
     if any(fit.natural_frequency_hz is None for fit in fits):
         return ()
     apart = sum(_left(fit, record) for fit, record in zip(fits, records, strict=True))
-    frequencies = [fit.natural_frequency_hz.interval95 for fit in fits if fit.natural_frequency_hz]
-    differ = any(one[1] < other[0] or other[1] < one[0] for one, other in combinations(frequencies, 2))
-    if apart > LEAVES * left or not differ:
+    differ = _lie_apart([fit.natural_frequency_hz for fit in fits]) or _lie_apart(
+        [fit.damping_ratio_percent for fit in fits]
+    )
+    if apart > leaves * left or not differ:
         return ()
     return tuple(
         Alone(record.name, fit.natural_frequency_hz, fit.damping_ratio_percent)
         for record, fit in zip(records, fits, strict=True)
         if fit.natural_frequency_hz
     )
+
+
+def _lie_apart(found: Sequence[Estimate | None]) -> bool:
+    """Whether the intervals of two of them do."""
+    intervals = [one.interval95 for one in found if one is not None]
+    return any(one[1] < other[0] or other[1] < one[0] for one, other in combinations(intervals, 2))
 
 
 def said_of_each(found: Sequence[Alone]) -> str:
