@@ -19,7 +19,7 @@ def followed_one_by_one(state: State) -> str:
 
 
 def of_each_record(state: State) -> str:
-    """The same, also where one model loses none, but leaves more than the sensor makes, and each record's own hardly any.
+    """The same, also where one model loses none, but leaves more than the sensor makes and single ones hardly any.
 
     Args:
         state: Where the search ended.
