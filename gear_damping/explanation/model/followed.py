@@ -3,7 +3,7 @@
 Where flanks part in one record of six, no parameters follow it, and those that come nearest follow none of the others.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from gear_damping.explanation.evidence.excess import ac_energy
@@ -20,7 +20,7 @@ ZERO_ERROR = 0.05  # of the larger torque: a smaller one of the other sign may b
 
 
 def followed_alone(
-    nominal: Outcome, evidence: Evidence, calibrated: Callable[[Evidence], Outcome]
+    nominal: Outcome, evidence: Evidence, calibrated: Callable[[Evidence], Iterator[Outcome]]
 ) -> tuple[Outcome, Evidence] | None:
     """The nominal model of the records that it follows without the others, and these; None where there are no such.
 
@@ -29,7 +29,8 @@ def followed_alone(
     Args:
         nominal: Fitted to all records.
         evidence: All records.
-        calibrated: Fits the nominal model to records.
+        calibrated: Fits the nominal model to records, to a part of long ones first: of what that leaves too much, all
+            of them leave no less.
     """
     found, kept = nominal, evidence
     while any(losses := _losses(found, kept)):
@@ -37,10 +38,11 @@ def followed_alone(
             return None
         worst = max(range(len(losses)), key=losses.__getitem__)
         kept = replace(kept, fit=tuple(record for i, record in enumerate(kept.fit) if i != worst))
-        again = calibrated(kept)
-        if _mean_square(again) > HELPED * _mean_square(found):
-            return None
-        found = again
+        least = HELPED * _mean_square(found)
+        for again in calibrated(kept):
+            if _mean_square(again) > least:
+                return None
+            found = again
     return None if kept is evidence else (found, kept)
 
 

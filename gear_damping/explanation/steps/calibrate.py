@@ -258,11 +258,13 @@ def _carried_over(found: Calibration, evidence: Evidence, solver: Solver | None)
     return Calibration(evidence, nominal, None, followed)
 
 
-def _shaped(evidence: Evidence, solver: Solver | None) -> Outcome:
-    """The nominal model of some of the records."""
+def _shaped(evidence: Evidence, solver: Solver | None) -> Iterator[Outcome]:
+    """The nominal model of some of the records, of long ones on a part of them and then on all."""
     part = _on_a_part(evidence)
     found = shaped(_rough_gear_pair(part, solver), part, SHAPE_ITERATIONS, solver)
-    return found if part is evidence else _on_the_whole(found, evidence, SHAPE_ITERATIONS, solver)
+    yield found
+    if part is not evidence:
+        yield _on_the_whole(found, evidence, SHAPE_ITERATIONS, solver)
 
 
 def _of_others(found: Outcome, followed: Evidence, evidence: Evidence, solver: Solver | None) -> Outcome:
