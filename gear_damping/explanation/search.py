@@ -126,8 +126,8 @@ def _calibrated_anew(state: State, best: Refit) -> State | None:
     bench = state.bench
     if state.calibrations >= bench.settings.most_calibrations:
         return None
-    settled = bench.without(best.outcome, best.name)
-    if not bench.is_as_good(settled, best.outcome):
+    settled = bench.as_good_without(best.outcome, best.name, state.outcome)
+    if settled is None:
         return None
     bench.log(f"what {best.name} seemed to take is taken without it: the fit had not converged")
     nominal = state.nominal if state.accepted else settled

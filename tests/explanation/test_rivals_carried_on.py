@@ -44,3 +44,25 @@ def test_of_forms_with_as_many_parameters_one_is_held_against_the_best():
     worse, better = sized(NAMES[1], 3, 0.6), sized(NAMES[1], 3, 0.5)
     kept = benches._one_a_size([best, same, other, worse, better], best)
     assert [id(one) for one in kept] == [id(one) for one in (best, other, better)]
+
+
+@pytest.mark.parametrize(("system", "reach"), [(GearPair, 0.7), (Oscillator, inf)])
+@pytest.mark.parametrize("is_as_good", [True, False])
+def test_a_model_without_a_cause_goes_on_only_as_long_as_it_may_take_a_cause_s_part(
+    system, reach, is_as_good, monkeypatch
+):
+    """Without a bearing that took 99 % the nominal model crept for 25 s to where it had been."""
+    asked, found, before = [], outcome(0.9), outcome(1.0)
+
+    def fitted(*_, ends, **__):
+        asked.append(ends.reach)
+        return found
+
+    monkeypatch.setattr(benches, "fit_hypothesis", fitted)
+    monkeypatch.setattr(benches, "_without", lambda hypothesis, name: hypothesis)
+    monkeypatch.setattr(benches.Bench, "is_as_good", lambda *_: is_as_good)
+    settings = SearchSettings(least_share=0.3)
+    best = outcome(0.1, hypothesis=None)
+    said = bench(settings, has=system.has).as_good_without(best, NAMES[0], before)
+    assert (said is found) == is_as_good
+    assert asked == [pytest.approx(reach)]
