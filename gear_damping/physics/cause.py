@@ -189,6 +189,8 @@ class Cause:
             one answer.
         acts_as: What it comes to at the motion that was recorded, as words for a sentence with a size in N or in what
             that is per unit of mass: of its values by own name, the mean stiffness and the amplitude of the motion.
+        also: What else would do the same to what was recorded, as a sentence, or nothing: of its options, its values by
+            own name and the base values of the model, each a number.
         modes: The poles of the two modes that it makes of one, in 1/s: of its values by own name, the stiffness and the
             damping of the first one alone, both per unit of mass.
         settles: Of the same, its values and the stiffness and damping that make the same free motion.
@@ -202,6 +204,7 @@ class Cause:
     turns_with: Literal["", "shaft", "tooth", "clock", "record"] = ""
     one_class: tuple[str, ...] = ()
     acts_as: Callable[[Mapping[str, float], float, float], tuple[str, float] | None] | None = None
+    also: Callable[[Mapping[str, Any], Mapping[str, float], Mapping[str, float]], str] | None = None
     modes: Callable[[Mapping[str, float], float, float], Sequence[complex]] | None = None
     settles: Callable[[Mapping[str, float], float, float], tuple[dict[str, float], float, float]] | None = None
 

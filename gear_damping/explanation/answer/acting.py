@@ -27,6 +27,19 @@ def acts_as(state: State) -> list[str]:
     return found
 
 
+def also_as(state: State) -> list[str]:
+    """A sentence for each cause that something else would do the same as, where no sensor on a shaft parts the two."""
+    outcome, evidence = state.outcome, state.bench.evidence
+    if any(channel.derivatives for record in evidence.fit for channel in record.channels):
+        return []
+    model = outcome.hypothesis.model
+    base = model.prepare(model.values(1, **outcome.flat_given())).base
+    numbers = {name: float(value[0]) for name, value in base.items() if value.numel() == 1}
+    told = [(cause.effect, cause.effect.cause.also) for cause in state.accepted if cause.effect.cause.also]
+    said = (also(effect.chosen, outcome.values_of(effect.name), numbers) for effect, also in told)
+    return [sentence for sentence in said if sentence]
+
+
 def inputs_and_loads(state: State) -> list[str]:
     """Sentences on measured inputs that the motion does not show, and on a constant force that may be friction."""
     outcome, evidence = state.outcome, state.bench.evidence

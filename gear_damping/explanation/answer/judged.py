@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from gear_damping.explanation.answer.acting import acts_as, inputs_and_loads
+from gear_damping.explanation.answer.acting import acts_as, also_as, inputs_and_loads
 from gear_damping.explanation.answer.gain import nrmse
 from gear_damping.explanation.answer.levels import of_unit_spread, said_of_levels
 from gear_damping.explanation.answer.modes import modes_of
@@ -133,7 +133,7 @@ def _judged(found: Confirmed, notes: Sequence[str], is_short: bool) -> tuple[Jud
     )
     said = verdict(state, before, after, known)
     left = line_left(state)
-    acting = (*acts_as(state), *modes_of(state)) if said.word not in (CONSISTENT, UNEXPLAINED) else ()
+    acting = (*acts_as(state), *also_as(state), *modes_of(state)) if said.word not in (CONSISTENT, UNEXPLAINED) else ()
     if said.word == CONSISTENT:  # what would take part of so little is no cause
         state, after = replace(state, accepted=(), outcome=state.nominal, left=state.seen), before
     differs = said_of_levels(state.outcome, evidence) if state.accepted else []

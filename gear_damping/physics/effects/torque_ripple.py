@@ -1,6 +1,7 @@
 """Ripple of the driving torque."""
 
-from typing import ClassVar
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
 import torch
 from torch import Tensor
@@ -47,6 +48,23 @@ def _every_order(rig: Rig) -> tuple[Recipe, ...]:
     )
 
 
+def _alone(options: Mapping[str, Any], values: Mapping[str, float], base: Mapping[str, float]) -> str:
+    """How large a ripple of the pinion's torque alone would have to be."""
+    if options["proportional"] or options["gear_torque"] == "stays":
+        return ""
+    factor = base["load_per_pinion_torque"] / _per_pinion_torque(base)
+    return (
+        f"`torque_ripple` is one of both torques, as they were declared: of the pinion's alone, beside a torque of the "
+        f"gear that stays as it is, {factor * values['amplitude']:.3g} N*m would do the same to the transmission error."
+    )
+
+
+def _per_pinion_torque(base: Mapping[str, Any]) -> Any:
+    """The force of a torque of the pinion alone, which speeds up both shafts, per torque."""
+    pinion, gear = (base[f"base_radius_{s}"] ** 2 / base[f"inertia_{s}"] for s in SHAFTS)
+    return pinion / (pinion + gear) / base["base_radius_pinion"]
+
+
 class TorqueRipple(Load, LoadFactor):
     """A torque at an order of the pinion shaft that no torque channel shows."""
 
@@ -69,6 +87,7 @@ class TorqueRipple(Load, LoadFactor):
         _every_order,
         separated_by="torque_channel",
         turns_with="shaft",
+        also=_alone,
     )
 
     @property
@@ -81,8 +100,7 @@ class TorqueRipple(Load, LoadFactor):
         per_torque = base["load_per_pinion_torque"]
         if self.is_unbalanced:
             self._check_is_torque()
-            pinion, gear = (base[f"base_radius_{s}"] ** 2 / base[f"inertia_{s}"] for s in SHAFTS)
-            per_torque = pinion / (pinion + gear) / base["base_radius_pinion"]
+            per_torque = _per_pinion_torque(base)
         force = values["amplitude"] * per_torque
         size = values["share"] if self.chosen["proportional"] else force
         return {"size": size, "order": values["order"], "phase": values["phase"]}
