@@ -18,12 +18,12 @@ from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 from gear_damping.identification.output_error.unknowns import OFFSET, is_of_model
 from gear_damping.measurement.vocabulary import GEAR_CHANNELS
-from gear_damping.physics.cycle_loss import damping_coefficient
 from gear_damping.physics.effects.mesh_stiffness_shape import MeshStiffnessShape
 from gear_damping.physics.kinematics import Kinematics, Rotation
 from gear_damping.physics.model import Model, Prepared
+from gear_damping.physics.ratio_by_law import ratio_by_law
 from gear_damping.physics.systems.traits import Trait
-from gear_damping.physics.terms import DampingForce, DampingLaw, MeshStiffness
+from gear_damping.physics.terms import MeshStiffness
 from gear_damping.simulation.runs import reference_velocity
 
 PHASES = 128  # of the mesh: more than the harmonics of wave and shape together, so that the mean is exact
@@ -188,19 +188,10 @@ def _by_law(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[d
         if is_of_model(name):
             set_value(values, name, value)
     prepared = model.prepare(values)
-    derived = prepared.derived | {"mean_stiffness": mean_stiffness(model, prepared)}
     speed = reference_velocity(prepared.derived)
     speed = speed[:1].expand(batch)  # the same amplitude for every point
-    found: dict[str, Tensor] = {}
-    for effect in model.effects:
-        if isinstance(effect, DampingLaw):
-            own = {p.name: values[f"{effect.name}.{p.name}"] for p in effect.parameters}
-            ratio = effect.damping_ratio(own, derived["equivalent_mass"], derived["mean_stiffness"], speed)
-            found[effect.name] = 100 * ratio
-        elif isinstance(effect, DampingForce) and not effect.requires:  # what acts in a gap alone damps no contact
-            critical = 2 * torch.sqrt(derived["mean_stiffness"] * derived["equivalent_mass"])
-            found[effect.name] = 100 * damping_coefficient(effect, prepared, speed) / critical
-    return found, float(speed[0])
+    by_law = ratio_by_law(model, values, prepared, mean_stiffness(model, prepared), speed)
+    return {name: 100 * ratio for name, ratio in by_law.items()}, float(speed[0])
 
 
 def mean_stiffness(model: Model, prepared: Prepared) -> Tensor:
