@@ -66,3 +66,25 @@ def test_a_model_without_a_cause_goes_on_only_as_long_as_it_may_take_a_cause_s_p
     said = bench(settings, has=system.has).as_good_without(best, NAMES[0], before)
     assert (said is found) == is_as_good
     assert asked == [pytest.approx(reach)]
+
+
+@pytest.mark.parametrize(("system", "reach"), [(GearPair, 0.1 / 0.75), (Oscillator, inf)])
+@pytest.mark.parametrize("converged", [True, False])
+def test_a_model_without_a_cause_that_was_given_up_is_no_model_without_it(system, reach, converged, monkeypatch):
+    """What is pruned asks no further than whether the cause takes a part; who asks for the model gets it whole."""
+    asked = []
+
+    def fitted(*_, ends, **__):
+        asked.append(ends.reach)
+        found = outcome(0.9)
+        found.fitted.converged = converged or ends.reach == inf
+        return found
+
+    monkeypatch.setattr(benches, "fit_hypothesis", fitted)
+    monkeypatch.setattr(benches, "_without", lambda hypothesis, name: hypothesis)
+    best = outcome(0.1, hypothesis=None)
+    known = bench(SearchSettings(least_share=0.25), has=system.has, is_over=lambda: False)
+    first = known.without(best, NAMES[0], known.spared(best))
+    assert asked == [pytest.approx(reach)]
+    assert (known.without(best, NAMES[0]) is first) == (converged or system is Oscillator)
+    assert known.without(best, NAMES[0]).fitted.converged

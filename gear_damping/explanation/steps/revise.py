@@ -68,7 +68,7 @@ def pruned(state: State) -> State:
     for cause in state.accepted:
         if len(state.accepted) == 1:
             break
-        without = bench.without(state.outcome, cause.name)
+        without = bench.without(state.outcome, cause.name, bench.spared(state.outcome))
         is_needed = bench.paired_gain(without, state.outcome)[1] >= bench.settings.accepted_t
         if is_needed and not _is_enough(without, state):
             continue
