@@ -1,5 +1,7 @@
 """A damping that differs from record to record is named, with the damping of each; one damping for all is none."""
 
+import re
+
 import numpy as np
 import pytest
 import yaml
@@ -85,3 +87,22 @@ def test_one_damping_for_all_records_is_none(tmp_path):
     content = explain(measurement).content
     assert (content["verdict"], content["causes"]) == ("consistent", [])
     assert content["gain"]["damping_ratio_percent"]["by_record"] == []
+
+
+def test_without_a_spring_the_coefficient_of_every_record_is_told(tmp_path):
+    """Discs that a magnet brakes: no damping is critical, and the ratio of each was said to be 0 %."""
+    rates, time, generator = (0.1, 0.15, 0.45, 0.2), np.arange(0, 12, 0.05), np.random.default_rng(8)
+    records = []
+    for k, rate in enumerate(rates):
+        speed = 20 * np.exp(-rate * time) + 0.01 * generator.normal(size=time.size)
+        np.savetxt(tmp_path / f"r{k}.csv", np.c_[time, speed], delimiter=",")
+        channels = {"time": {"column": 0, "unit": "s"}, "velocity": {"column": 1, "unit": "rad/s"}}
+        role = "holdout" if k == len(rates) - 1 else "fit"
+        records.append({"name": f"r{k}", "file": f"r{k}.csv", "role": role, "channels": channels})
+    content = {"system": "oscillator", "parameters": {"stiffness": "0 1/s^2"}, "records": records}
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(content))
+    found = explain(load_measurement(tmp_path / "measurement.yaml")).content
+    assert [cause["name"] for cause in found["causes"]] == ["damping_by_record"]
+    (said,) = (one for one in found["sentences"] if one.startswith("The viscous damping is"))
+    told = {record: float(value) for value, record in re.findall(r"([\d.]+) 1/s \([^)]*\) in (r\d)", said)}
+    assert told == pytest.approx({"r0": 0.1, "r1": 0.15, "r2": 0.45}, rel=0.02)

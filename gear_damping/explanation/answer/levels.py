@@ -8,15 +8,18 @@ import torch
 from torch import Tensor
 
 from gear_damping.explanation.answer.gain import damping_ratios
+from gear_damping.explanation.evidence.declared_units import rig_unit
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.candidates import Candidate
 from gear_damping.explanation.model.homogeneity import block_of
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.model.own_phases import own_levels
 from gear_damping.explanation.model.positive import copied
+from gear_damping.identification.oscillator.linear_model import DAMPING
 from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
 from gear_damping.identification.output_error.records import SEPARATOR
 from gear_damping.identification.output_error.uncertainty import QUANTILE
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import DampingForce, Effect, ElasticForce
 
 SAME = 0.01  # share of a column that the levels leave of it: less is their mean, but for the steps of slopes
@@ -90,6 +93,15 @@ def damping_by_record(outcome: Outcome, evidence: Evidence) -> Rows:
     return _told(rows, lambda value: max(0.0, mean + (by_one - mean) * value / spread))
 
 
+def coefficient_by_record(outcome: Outcome, evidence: Evidence) -> Rows:
+    """The damping coefficient of each fitted record, in SI or per unit of mass; none where it is one for all.
+
+    Without a spring no damping is critical, and the coefficient itself is told.
+    """
+    mean = float(outcome.flat_given().get(DAMPING, 0.0))
+    return _told(_rows_of(outcome, DampingForce, evidence)[0], lambda value: max(0.0, mean + value))
+
+
 def frequency_by_record(outcome: Outcome, evidence: Evidence) -> Rows:
     """The natural frequency of each fitted record in Hz with its 95 % interval; none where it is one for all."""
     rows, _, _ = _rows_of(outcome, ElasticForce, evidence)
@@ -123,6 +135,9 @@ def _rows_of(outcome: Outcome, kind: type[Effect], evidence: Evidence) -> tuple[
 
 def said_of_levels(outcome: Outcome, evidence: Evidence) -> list[str]:
     """Sentences with the damping ratio, and the natural frequency, of every record, from the largest."""
+    if evidence.has(Trait.REST) and not evidence.has_spring:
+        unit = rig_unit("N*s/m", evidence)
+        return _said(coefficient_by_record(outcome, evidence), "viscous damping", unit, 3)
     damping, frequency = damping_by_record(outcome, evidence), frequency_by_record(outcome, evidence)
     return [*_said(damping, "damping ratio", "%", 3), *_said(frequency, "natural frequency", "Hz", 5)]
 
