@@ -1,5 +1,6 @@
 """How far rivals of the best fit are carried on, and which of their forms are held against it; on made-up fits."""
 
+from dataclasses import dataclass
 from math import inf
 from types import SimpleNamespace
 
@@ -7,7 +8,7 @@ import pytest
 
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
-from gear_damping.explanation.steps import single
+from gear_damping.explanation.steps import revise, single
 from gear_damping.explanation.trials import bench as benches
 from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.physics.systems.oscillator import Oscillator
@@ -31,6 +32,21 @@ def test_under_a_preload_a_rival_goes_on_only_as_long_as_it_may_become_the_best(
     state = State(bench(SearchSettings(), has=system.has), nominal, nominal)
     assert [one.name for one in single._converged_rivals((best, rival, far), state)] == list(NAMES[:3])
     assert goals == {NAMES[0]: inf, NAMES[1]: reach}
+
+
+@dataclass(frozen=True)
+class Cause:
+    name: str
+    confusable: tuple
+
+
+def test_where_the_time_is_over_an_accepted_cause_is_no_rival_of_another():
+    """A softer tooth was not told apart from the eccentricity that was named beside it."""
+    refuses = SimpleNamespace(refuses=lambda what: True)
+    causes = (Cause(NAMES[0], (NAMES[1], NAMES[2])), Cause(NAMES[1], ()))
+    state = SimpleNamespace(bench=SimpleNamespace(budget=refuses), accepted=causes, names={NAMES[0], NAMES[1]})
+    state.with_cause = lambda place, cause: (place, cause.confusable)
+    assert revise._beside_the_others_at(state, 0) == (0, (NAMES[2],))
 
 
 def sized(name, free, squares):
