@@ -133,7 +133,7 @@ def test_too_little_to_bet_on_does_not_tell_two_apart(difference, correlation, e
     bench = Bench(evidence, noise, None, None, noise)
     outcomes = [SimpleNamespace(left_out=[residual]) for residual in (other, best)]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("gear_damping.explanation.trials.bench.block_samples", lambda *_: [SAMPLES // 16])
+        patch.setattr("gear_damping.explanation.trials.comparison.block_samples", lambda *_: [SAMPLES // 16])
         assert bench.is_as_good(*outcomes) is expected
 
 
@@ -145,7 +145,7 @@ def test_errors_of_a_nominal_model_that_is_far_off_make_no_rivals():
     bench = Bench(SimpleNamespace(settings=SearchSettings(), judged=held), noise, None, None, noise)
     outcomes = [SimpleNamespace(left_out=[residual]) for residual in (other, best)]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("gear_damping.explanation.trials.bench.block_samples", lambda *_: [SAMPLES // 16])
+        patch.setattr("gear_damping.explanation.trials.comparison.block_samples", lambda *_: [SAMPLES // 16])
         assert not bench.is_as_good(*outcomes)
 
 

@@ -5,20 +5,15 @@ from dataclasses import dataclass, field, replace
 from math import inf
 from typing import Any
 
-from torch import Tensor
-
 from gear_damping.explanation.budget import Budget
-from gear_damping.explanation.evidence.excess import Excess, excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
-from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.candidates import Candidate, candidates_for, restored
 from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
-from gear_damping.explanation.settings import SearchSettings
-from gear_damping.explanation.statistics.paired import confirmation, paired_gain
 from gear_damping.explanation.trials.assess import Assessment, assessed
-from gear_damping.explanation.trials.refit import Refit, block_samples, chosen, compared, refitted, with_later
+from gear_damping.explanation.trials.comparison import Comparison
+from gear_damping.explanation.trials.refit import Refit, chosen, compared, refitted, with_later
 from gear_damping.explanation.trials.score import Score, Scoring, contains, scores
 from gear_damping.explanation.trials.told_size import is_told
 from gear_damping.identification.output_error.least_squares import Ends, Fitted, Rounds
@@ -30,7 +25,6 @@ from gear_damping.simulation.solver_settings import Solver
 LEAST_TAKEN = 0.25  # of what another takes of the fitted records, for a fit to be carried to its end,
 RIVALS_LEAVE = 1.25  # and where that is nearly all that is missing, of what it leaves: only rivals count then
 LAST_ITERATIONS = 60  # of a cause that is accepted before its fit has converged
-SAME = 1e-3  # of the noise variance: a mean difference below it is none
 Log = Callable[[str], None]
 
 
@@ -39,8 +33,8 @@ def nobody(text: str) -> None:
 
 
 @dataclass(frozen=True)
-class Bench:
-    """Where candidates are tried.
+class Bench(Comparison):
+    """Where candidates are tried, and compared.
 
     Args:
         evidence: The records, with their noise.
@@ -55,8 +49,6 @@ class Bench:
             several steps ask for the same one.
     """
 
-    evidence: Evidence
-    noise: NoiseLevel
     log: Log
     solver: Solver | None
     floor: NoiseLevel
@@ -68,15 +60,6 @@ class Bench:
     def __getstate__(self) -> dict[str, Any]:
         """What is kept in a file: who was told goes on in its own process alone, and so do numbers of its objects."""
         return vars(self) | {"log": nobody, "fewer": {}}
-
-    @property
-    def settings(self) -> SearchSettings:
-        """Thresholds."""
-        return self.evidence.settings
-
-    def excess(self, outcome: Outcome) -> Excess:
-        """What a model leaves of operating conditions that are left out of its fit."""
-        return excess(outcome.left_out, self.evidence.judged, self.noise, self.settings)
 
     def assessed(self, outcome: Outcome, ranked: Sequence[Score], families: bool = True) -> Assessment | None:
         """What the residuals of a model hold that is not random, and what is; beside families without a name or not."""
@@ -240,38 +223,6 @@ class Bench:
             fit.score, with_later(fit.outcome, candidate, self.evidence, self.solver), against, self.evidence
         )
 
-    def is_as_good(self, outcome: Outcome, best: Outcome) -> bool:
-        """Whether a model is not worse than another by the paired test, or by too little for anybody to bet on it.
-
-        What two predictions differ by may be small and yet have one sign in all blocks. The difference of their sums
-        of squares in noise variances is twice the logarithm of the odds between them.
-        """
-        return self.no_worse(outcome.left_out, best.left_out, self._blocks(best))
-
-    def no_worse(self, other: Sequence[Tensor], best: Sequence[Tensor], blocks: Sequence[int]) -> bool:
-        """The same of residuals, over blocks of so many samples by record.
-
-        What errors of a nominal model that is far off add to the noise is not in what the best leaves.
-        """
-        gain, t = paired_gain(other, best, blocks)
-        count = sum(len(residual) for residual in best)
-        left = sum(float(residual.square().sum()) for residual in best) / count
-        variance = min(self.noise.value**2, left)
-        if gain * count / self.noise.correlation < self.settings.rival_evidence * variance:
-            return True
-        return t < self.settings.rival_t or gain < SAME * variance
-
-    def paired_gain(self, before: Outcome, after: Outcome) -> tuple[float, float]:
-        """Gain of the second over the first on left-out records, with its t."""
-        return paired_gain(before.left_out, after.left_out, self._blocks(after))
-
-    def confirmation(self, before: Outcome, after: Outcome) -> float:
-        """The t statistic of what the second adds to the prediction of conditions left out."""
-        return confirmation(before.left_out, after.left_out, self._blocks(after))
-
-    def _blocks(self, outcome: Outcome) -> list[int]:
-        return block_samples(outcome, self.evidence, self.evidence.judged)
-
     def simplest(self, best: Refit, fits: Sequence[Refit]) -> tuple[Refit, tuple[str, ...]]:
         """The explanation with its rivals, the effects whose full fit is not worse by the paired test.
 
@@ -307,14 +258,6 @@ class Bench:
         plain = [one for one in fits if one.name == simpler and one.is_seen_in_fit]
         return next((one for one in plain if not self.is_further(fit.outcome, one.outcome)), fit)
 
-    def is_further(self, richer: Outcome, simpler: Outcome) -> bool:
-        """Whether a richer law takes as much of what the one that it contains leaves as a further cause must.
-
-        One that takes less bends to something else that is missing.
-        """
-        left, most = self.excess(richer).percent, self.excess(simpler).percent
-        return most - left >= self.settings.least_share * most
-
     def _not_encompassed(self, best: Refit, alike: Sequence[Refit]) -> list[Refit]:
         """Those that the best explanation does not beat by what the other leaves."""
         if not self.evidence.sealed or len(alike) < 2 or not any(fit is best for fit in alike):
@@ -336,11 +279,6 @@ class Bench:
             return True
         settings = self.settings
         return fit.gain >= settings.rival_share * best.gain and fit.fit_gain > best.fit_gain + settings.seen_in_fit
-
-    def takes_most(self, fit: Refit, beside: Outcome) -> bool:
-        """Whether an effect takes most of what a model without it leaves of operating conditions that are left out."""
-        left, most = self.excess(fit.outcome).percent, self.excess(beside).percent
-        return most - left >= self.settings.taken_by_one * most
 
     def is_determined(self, fit: Refit, beside: Outcome) -> bool:
         """Whether the records tell the size of an effect, where its fit leaves more than noise and little is taken.

@@ -11,8 +11,7 @@ from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps import faint, pairs, single
 from gear_damping.explanation.steps.judge import CONSISTENT, EXPLAINED, PARTLY, UNEXPLAINED, Known, verdict
-from gear_damping.explanation.trials import bench as benches
-from gear_damping.explanation.trials import told_size
+from gear_damping.explanation.trials import comparison, told_size
 from tests.explanation.decisions.declared import decides
 from tests.explanation.decisions.made_up import NAMES, bench, fit, left, outcome, scored
 
@@ -46,7 +45,7 @@ def confirmed(settings: SearchSettings):
         before = outcome(left_out=[old])
         found = fit(cost=0.5)
         found.outcome.left_out = [old - 0.1 * signs.repeat_interleave(BLOCK)]
-        with patch.object(benches, "block_samples", lambda *_: [BLOCK]):
+        with patch.object(comparison, "block_samples", lambda *_: [BLOCK]):
             worth.append(faint._is_worth(found, before, SimpleNamespace(taken=0.1), bench(settings, judged=[])))
     return tuple(worth)
 

@@ -7,6 +7,7 @@ import torch
 
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.trials import bench as benches
+from gear_damping.explanation.trials import comparison
 from gear_damping.explanation.trials.refit import Refit, chosen, compared
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 from tests.explanation.decisions.declared import decides
@@ -62,7 +63,7 @@ def of_conditions_left_out(gains: torch.Tensor) -> list[SimpleNamespace]:
 
 
 def as_good(gains: torch.Tensor, settings: SearchSettings) -> bool:
-    with patch.object(benches, "block_samples", lambda *_: [BLOCK]):
+    with patch.object(comparison, "block_samples", lambda *_: [BLOCK]):
         return bench(settings, judged=[HELD]).is_as_good(*of_conditions_left_out(gains))
 
 
