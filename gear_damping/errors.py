@@ -9,6 +9,7 @@ from errno import EDQUOT, EFBIG, ENOSPC, EROFS
 from pathlib import Path
 from uuid import uuid4
 
+_VOWELS = "aeiouAEIOU"
 _LONGEST = 300  # characters of a value in a message, some lines; a whole file may stand where a mapping should
 
 
@@ -128,3 +129,8 @@ def written_whole(path: Path, by_several: bool = False) -> Iterator[Path]:
         except BaseException:
             unfinished.unlink(missing_ok=True)
             raise
+
+
+def with_article(name: str) -> str:
+    """A name in a sentence behind its indefinite article: `an oscillator`, `a gear_pair`."""
+    return f"{'an' if name[:1] in _VOWELS else 'a'} {name}"

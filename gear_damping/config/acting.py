@@ -8,8 +8,8 @@ from typing import Any
 
 from gear_damping.config.locate import groups
 from gear_damping.config.measured import MEASURED
+from gear_damping.config.quantities import split_suffix
 from gear_damping.config.source import COMMAND_LINE, EXPERIMENT, Origin
-from gear_damping.units import SUFFIXES
 
 Found = Iterator[tuple[str, str, Any, str]]  # key, rule, value, remedy
 
@@ -134,15 +134,15 @@ def _set_by_tests(key: str, config: Mapping[str, Any]) -> str | None:
     group, _, name = key.partition(".")
     if config["task"] != PLAN or group != "simulator":
         return None
-    spelled = {name, name.rpartition("_")[0] if name.rpartition("_")[2] in SUFFIXES else name}
-    return next((by for one, by in SET_BY_TESTS.items() if one in spelled and _says(config, by)), None)
+    by = SET_BY_TESTS.get(split_suffix(name, SET_BY_TESTS)[0])
+    return by if by and _says(config, by) else None
 
 
 def _says(config: Mapping[str, Any], name: str) -> bool:
     """Whether the plan says something under a key, whatever its unit."""
     plan = config.get("plan")
     given = plan.items() if isinstance(plan, Mapping) else ()
-    return any(key == name or key.startswith(f"{name}_") for key, value in given if value)
+    return any(split_suffix(key, {name: ""})[0] == name for key, value in given if value)
 
 
 def _of_the_experiment(task: str, is_extended: bool, origin: Origin) -> Found:

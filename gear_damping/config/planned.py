@@ -8,10 +8,9 @@ from gear_damping.config.quantities import quantity, split_suffix
 from gear_damping.config.reader import Reader
 from gear_damping.config.simulator import SimulatorSettings
 from gear_damping.config.source import ORDER, Origin
-from gear_damping.errors import InputError, nearest
+from gear_damping.errors import InputError, nearest, with_article
 from gear_damping.identification.test_plan.asked import PlanCosts, PlanGoal, PlannedSensor, PlannedTests, Unknown
 from gear_damping.identification.test_plan.channels import channels_of
-from gear_damping.physics.article import with_article
 from gear_damping.physics.parameter import Parameter
 from gear_damping.schema.values import Flag, Given, Number, Text
 from gear_damping.units import spoken

@@ -1,6 +1,6 @@
 """Numbers with units in the configuration: parameters become SI here, other keys as `schema.values.Number` has it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from math import isfinite
 from typing import Any
 
@@ -10,7 +10,7 @@ from gear_damping.physics.parameter import Parameter
 from gear_damping.units import DIGITS, SUFFIXES, parse_unit, said_as, spoken, to_si
 
 
-def split_suffix(key: str, known: Mapping[str, Any]) -> tuple[str, str | None]:
+def split_suffix(key: str, known: Container[str]) -> tuple[str, str | None]:
     """The parameter a key names and the unit of its suffix: `pinion_speed_rpm` → (`pinion_speed`, `rpm`)."""
     if key in known:
         return key, None

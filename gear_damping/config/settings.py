@@ -86,10 +86,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
     if wavelet is not None:
         config["wavelet"] = wavelet  # its numbers are in the unit of their key now
     whole = Whole(config, simulator, origin, models)
-    found = combination_problems(whole, {problem.key for problem in problems})
-    # The simulator that is read is not the one of the measurement: of a key that cannot act no other name is offered.
-    idle = {one.key for one in found if one.rule.startswith(IDLE) and one.key.startswith("simulator.")}
-    problems = [one for one in problems if one.key not in idle] + found
+    problems = _with_combinations(problems, whole)
     if problems:
         raise InputError(problems)
     return Settings(
@@ -118,6 +115,16 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         measurement_plugins=tuple(config["measurement"]["plugins"] or ()),
         plan=plan,
     )
+
+
+def _with_combinations(problems: Sequence[Problem], whole: Whole) -> list[Problem]:
+    """Problems of single keys, then those of several; of a key of the simulator that cannot act the latter alone.
+
+    The simulator that is read is not the one of the measurement, and no other name of a key helps.
+    """
+    found = combination_problems(whole, {problem.key for problem in problems})
+    idle = {one.key for one in found if one.rule.startswith(IDLE) and one.key.startswith("simulator.")}
+    return [*(one for one in problems if one.key not in idle), *found]
 
 
 def _path(text: str | None) -> Path | None:

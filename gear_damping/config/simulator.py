@@ -11,8 +11,7 @@ from gear_damping.config.prior import OTHER_FAMILY, read_prior
 from gear_damping.config.quantities import split_suffix
 from gear_damping.config.reader import Reader
 from gear_damping.config.source import COMMAND_LINE, Origin
-from gear_damping.errors import InputError, Problem, nearest
-from gear_damping.physics.article import with_article
+from gear_damping.errors import InputError, Problem, nearest, with_article
 from gear_damping.physics.catalogue import catalogue, system_catalogue
 from gear_damping.physics.model import Model
 from gear_damping.physics.parameter import Parameter

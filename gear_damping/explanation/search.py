@@ -126,8 +126,9 @@ def _calibrated_anew(state: State, best: Refit) -> State | None:
     bench = state.bench
     if state.calibrations >= bench.settings.most_calibrations:
         return None
-    settled = bench.as_good_without(best.outcome, best.name, state.outcome)
-    if settled is None:
+    # far above what a cause must leave it creeps for half a minute
+    settled = bench.without(best.outcome, best.name, bench.foretold(bench.goal(state.outcome)))
+    if not bench.is_as_good(settled, best.outcome):
         return None
     bench.log(f"what {best.name} seemed to take is taken without it: the fit had not converged")
     nominal = state.nominal if state.accepted else settled

@@ -10,11 +10,10 @@ from scipy.interpolate import CubicSpline
 from scipy.stats import f as f_distribution
 from torch import Tensor
 
-from gear_damping.errors import InputError, Problem
+from gear_damping.errors import InputError, Problem, with_article
 from gear_damping.identification.angle_steps import between_steps
 from gear_damping.identification.output_error.records import Filter, FitRecord, FreeParameter, Observed
 from gear_damping.measurement.record import Channel, Measurement, Quantity, Record
-from gear_damping.physics.article import with_article
 from gear_damping.physics.systems.base import System
 from gear_damping.physics.systems.oscillator import Oscillator
 

@@ -13,10 +13,9 @@ import numpy as np
 import torch
 
 from gear_damping.at_home import at_home
-from gear_damping.errors import InputError, Problem
+from gear_damping.errors import InputError, Problem, with_article
 from gear_damping.explanation.explain import Listener
 from gear_damping.measurement.record import Measurement
-from gear_damping.physics.article import with_article
 from gear_damping.schema.values import Flag, Given, Number, OneOf, Problems
 from gear_damping.simulation.solver_settings import Engine, Solver
 
@@ -49,7 +48,17 @@ def refuse_other_kind(name: str, value: object, kind: type, example: str) -> Non
     Raises:
         InputError: it is one.
     """
-    if value is not None and not isinstance(value, kind):
+    if value is not None:
+        require_kind(name, value, kind, example)
+
+
+def require_kind(name: str, value: object, kind: type, example: str) -> None:
+    """The same, None refused too.
+
+    Raises:
+        InputError: it is of another kind.
+    """
+    if not isinstance(value, kind):
         raise InputError(
             Problem(name, f"must be {with_article(kind.__name__)}", repr(value), f"for example {name}={example}")
         )

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from gear_damping.errors import InputError, Problem
+from gear_damping.errors import InputError, Problem, with_article
 from gear_damping.identification.catalogue import builtin_estimators
 from gear_damping.identification.damping_estimate import DampingCurve
 from gear_damping.identification.estimators.base import RecordEstimator
@@ -19,7 +19,6 @@ from gear_damping.interface.damping_law import damping_law
 from gear_damping.interface.estimator import Prediction, all_recorded, made
 from gear_damping.interface.identified import Identification, refuse_faults
 from gear_damping.measurement.record import Channel, Measurement, Record
-from gear_damping.physics.article import with_article
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.reporting import figures
 from gear_damping.reporting.figures.axis_names import axis

@@ -114,8 +114,7 @@ def _refuse_without_ratio(runs: Runs) -> None:
     Raises:
         InputError: it says which law has none, or that there is none.
     """
-    by_law = runs.damping_ratio_by_law
-    nameless = [name for name, ratio in by_law.items() if not bool(ratio.isfinite().all())]
+    by_law, nameless = runs.damping_ratio_by_law, runs.laws_without_ratio
     if by_law and not nameless:
         return
     lacking = f"{' and '.join(nameless)} has none that could be worked out" if by_law else "there is no damping law"

@@ -7,7 +7,7 @@ from typing import Any
 
 from torch import Tensor
 
-from gear_damping.errors import InputError, Problem
+from gear_damping.errors import InputError, Problem, with_article
 from gear_damping.explanation.answer.gain import damping_ratio, final_parameters, nrmse, rmse
 from gear_damping.explanation.answer.other_shafts_torque import torque_of_the_other_shaft
 from gear_damping.explanation.answer.unexplained import first_channel
@@ -31,7 +31,6 @@ from gear_damping.interface.far_from_stated import far_from_stated
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.interface.own_start import own_start
 from gear_damping.measurement.record import Measurement
-from gear_damping.physics.article import with_article
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.reporting import figures, tables

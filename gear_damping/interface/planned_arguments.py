@@ -9,8 +9,7 @@ from typing import Any
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.test_plan.asked import PlanCosts, PlanGoal, PlannedSensor, PlannedTests, Unknown
 from gear_damping.identification.test_plan.channels import channels_of
-from gear_damping.interface.arguments import refuse_no_flag, refuse_other_kind
-from gear_damping.physics.article import with_article
+from gear_damping.interface.arguments import refuse_no_flag, refuse_other_kind, require_kind
 from gear_damping.physics.model import Model
 from gear_damping.schema.values import Problems
 from gear_damping.simulation.sampling import SAMPLING_RATE
@@ -31,7 +30,7 @@ class Handed:
 
     def tests(self, given: object) -> PlannedTests:
         """Tests with numbers alone."""
-        _refuse_other("tests", given, PlannedTests, "gd.PlannedTests(durations=[1, 2], sampling_rate=500)")
+        require_kind("tests", given, PlannedTests, "gd.PlannedTests(durations=[1, 2], sampling_rate=500)")
         found = {name: self._list(f"plan.{name}", getattr(given, name), unit) for name, unit in LISTS.items()}
         rate = self._number("plan.sampling_rate", given.sampling_rate, "Hz")
         wrong = None if rate is None else SAMPLING_RATE.problem(rate, "plan.sampling_rate")
@@ -41,7 +40,7 @@ class Handed:
 
     def sensor(self, given: object) -> PlannedSensor:
         """A sensor with numbers alone."""
-        _refuse_other("sensors", given, PlannedSensor, "gd.PlannedSensor('response', snr_db=30)")
+        require_kind("sensors", given, PlannedSensor, "gd.PlannedSensor('response', snr_db=30)")
         key, seen = f"plan.sensors.{given.name}", channels_of(self.system)
         unit = seen.get(given.sees) if isinstance(given.sees, str) else None
         found = {
@@ -62,7 +61,7 @@ class Handed:
         """What is unknown, with numbers alone."""
         if isinstance(given, str):
             return Unknown(given)
-        _refuse_other("unknown", given, Unknown, "gd.Unknown('stiffness', percent=2)")
+        require_kind("unknown", given, Unknown, "gd.Unknown('stiffness', percent=2)")
         key, declared = f"plan.unknown.{given.name}", self.declared.get(given.name)
         unit = "" if declared is None else self.system.unit_of(declared.unit)
         said = None if declared is None else given.deviation  # that there is no such parameter is said later
@@ -74,7 +73,7 @@ class Handed:
         """A goal with numbers alone."""
         refuse_other_kind("goal", given, PlanGoal, "gd.PlanGoal(percent=5)")
         given = given or PlanGoal()
-        _refuse_other("goal.costs", given.costs, PlanCosts, "gd.PlanCosts(per_test=1)")
+        require_kind("goal.costs", given.costs, PlanCosts, "gd.PlanCosts(per_test=1)")
         found = {
             name: self._number(f"plan.wanted_{name}", getattr(given, name), unit, optional=name == "exponent")
             for name, unit in GOAL.items()
@@ -130,18 +129,6 @@ class Handed:
             of, such = (f" in {unit}", f" or '2 {unit}'") if unit not in ("", "1") else ("", "")
             self.problems.append(Problem(key, f"must be a number{of}", _shown(value), f"for example 2{such}"))
         return None
-
-
-def _refuse_other(name: str, value: object, kind: type, example: str) -> None:
-    """Refuse an argument of another kind, None too.
-
-    Raises:
-        InputError: it is one.
-    """
-    if not isinstance(value, kind):
-        raise InputError(
-            Problem(name, f"must be {with_article(kind.__name__)}", repr(value), f"for example {name}={example}")
-        )
 
 
 def _shown(value: object) -> object:

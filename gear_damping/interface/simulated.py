@@ -11,9 +11,8 @@ import torch
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
-from gear_damping.errors import InputError, Problem
+from gear_damping.errors import InputError, Problem, with_article
 from gear_damping.interface.arguments import SEED, numbers, of_every_run, refuse_other_solver
-from gear_damping.physics.article import with_article
 from gear_damping.physics.model import Model
 from gear_damping.reporting import figures
 from gear_damping.schema.values import Number, Problems

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gear_damping.at_home import at_home
-from gear_damping.errors import InputError, Problem
+from gear_damping.errors import InputError, Problem, with_article
 from gear_damping.measurement.declaration import Plan, RecordPlan, declared_plan
 from gear_damping.measurement.declared_units import UnitSystem, written
 from gear_damping.measurement.files import UNKNOWN, Files, read_yaml, unfilled
@@ -83,8 +83,7 @@ def _filled(path: str | Path) -> object:
         InputError: it cannot be read, or something in it waits to be filled in.
     """
     if not isinstance(path, str | PathLike):
-        kind = type(path).__name__
-        rule = f"must be a path, and is {'an' if kind[0] in 'aeiou' else 'a'} {kind}"
+        rule = f"must be a path, and is {with_article(type(path).__name__)}"
         remedy = "give the path of a measurement.yaml, or what was read from it to identify and explain"
         raise InputError(Problem("path", rule, remedy=remedy))
     content = read_yaml(at_home(path))

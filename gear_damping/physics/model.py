@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from gear_damping.errors import InputError, Problem, nearest
-from gear_damping.physics.article import with_article
+from gear_damping.errors import InputError, Problem, nearest, with_article
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.systems.base import System

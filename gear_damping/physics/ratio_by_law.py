@@ -29,12 +29,19 @@ def ratio_by_law(
     mass, found = prepared.derived["equivalent_mass"], {}
     for effect in counted_laws(model):
         if isinstance(effect, DampingLaw):
-            own = {p.name: values[f"{effect.name}.{p.name}"] for p in effect.parameters}
-            found[effect.name] = effect.damping_ratio(own, mass, stiffness, speed)
+            found[effect.name] = stated_ratio(effect, values, mass, stiffness, speed)
         else:
             critical = 2 * torch.sqrt(stiffness * mass)
             found[effect.name] = damping_coefficient(effect, prepared, speed) / critical
     return found
+
+
+def stated_ratio(
+    law: DampingLaw, values: Mapping[str, Tensor], mass: Tensor, stiffness: Tensor, speed: Tensor
+) -> Tensor:
+    """The damping ratio that a law of a model states, 1 where critical, (batch,); arguments as before."""
+    own = {p.name: values[f"{law.name}.{p.name}"] for p in law.parameters}
+    return law.damping_ratio(own, mass, stiffness, speed)
 
 
 def counted_laws(model: Model) -> tuple[DampingForce, ...]:

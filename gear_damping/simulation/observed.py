@@ -3,7 +3,7 @@
 import torch
 from torch import Tensor
 
-from gear_damping.physics.article import with_article
+from gear_damping.errors import with_article
 from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.model import Prepared
 from gear_damping.physics.systems.traits import Trait

@@ -8,7 +8,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.model import Model
-from gear_damping.physics.ratio_by_law import ratio_by_law
+from gear_damping.physics.ratio_by_law import ratio_by_law, stated_ratio
 from gear_damping.physics.terms import ExtraStates, Recording, Sensor
 from gear_damping.simulation.series import ANGLE, ANGLE_RATE
 
@@ -63,8 +63,12 @@ class Runs:
     def damping_ratio_by_law(self) -> dict[str, Tensor]:
         """What each damping law adds to `damping_ratio_percent`, in %, (batch,), by its name."""
         stiffness, prepared = self.derived["mean_stiffness"], self.model.prepare(self.values)
-        ratios = ratio_by_law(self.model, self.values, prepared, stiffness, self.reference_velocity)
-        return {name: torch.where(stiffness > 0, 100 * ratio, torch.nan) for name, ratio in ratios.items()}
+        return self._percent(ratio_by_law(self.model, self.values, prepared, stiffness, self.reference_velocity))
+
+    @property
+    def laws_without_ratio(self) -> list[str]:
+        """The damping laws of which some run has no ratio: no stiffness, or too many steps of a cycle."""
+        return [name for name, ratio in self.damping_ratio_by_law.items() if not bool(ratio.isfinite().all())]
 
     @property
     def damping_ratio_percent(self) -> Tensor:
@@ -83,13 +87,14 @@ class Runs:
         It is what networks learn and what `damping_ratio` means where it is free: the share of the coefficient. It is
         nan where no effect of the model states one, and where there is no linear stiffness.
         """
-        mass, stiffness = self.derived["equivalent_mass"], self.derived["mean_stiffness"]
-        found = {}
-        for effect in self.model.damping_laws:
-            own = {p.name: self.values[f"{effect.name}.{p.name}"] for p in effect.parameters}
-            ratio = effect.damping_ratio(own, mass, stiffness, self.reference_velocity)
-            found[effect.name] = torch.where(stiffness > 0, 100 * ratio, torch.nan)
-        return self._summed(found)
+        of_the_rig = self.derived["equivalent_mass"], self.derived["mean_stiffness"], self.reference_velocity
+        ratios = {law.name: stated_ratio(law, self.values, *of_the_rig) for law in self.model.damping_laws}
+        return self._summed(self._percent(ratios))
+
+    def _percent(self, ratios: Mapping[str, Tensor]) -> dict[str, Tensor]:
+        """In %; nan where there is no stiffness, of which a damping could be critical."""
+        stiffness = self.derived["mean_stiffness"]
+        return {name: torch.where(stiffness > 0, 100 * ratio, torch.nan) for name, ratio in ratios.items()}
 
     def _summed(self, by_law: Mapping[str, Tensor]) -> Tensor:
         """All of them together, (batch,); nan of none."""

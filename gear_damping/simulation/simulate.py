@@ -6,8 +6,7 @@ from dataclasses import replace
 import torch
 from torch import Tensor
 
-from gear_damping.errors import InputError, Problem, nearest
-from gear_damping.physics.article import with_article
+from gear_damping.errors import InputError, Problem, nearest, with_article
 from gear_damping.physics.equation import HELD_LOAD
 from gear_damping.physics.model import Model, Prepared
 from gear_damping.physics.terms import HeldLoad, Sensor

@@ -17,7 +17,7 @@ from typing import Any
 from gear_damping.config.measured import INSPECT, YAML_SUFFIXES
 from gear_damping.config.shown import shown
 from gear_damping.config.source import Origin
-from gear_damping.errors import Problem, reading, writing, written_whole
+from gear_damping.errors import Problem, reading, with_article, writing, written_whole
 from gear_damping.tasks.lease import is_held
 
 log = logging.getLogger("gear_damping")
@@ -104,9 +104,8 @@ def problem_with_used(folder: Path, config: Mapping[str, Any]) -> Problem | None
     is_declared = config.get("task") == INSPECT and Path(measured).suffix.lower() in YAML_SUFFIXES  # leaves no YAML
     if name is None or is_declared or not (folder / name).exists():
         return None
-    article = "an" if name[0] in "aeiou" else "a"
     remedy = "give another folder, or move the file away"
-    return Problem("hydra.run.dir", f"holds {article} {name} already", str(folder), remedy)
+    return Problem("hydra.run.dir", f"holds {with_article(name)} already", str(folder), remedy)
 
 
 def status_of(folder: Path, record: Mapping[str, Any]) -> str:

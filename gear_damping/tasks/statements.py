@@ -60,7 +60,7 @@ def _damping(runs: Runs, law: str | None) -> str:
         return "no damping ratio is stated: the model has no damping law"
     if bool((runs.derived["mean_stiffness"] == 0).any()):
         return "no damping ratio can be stated: there is no linear stiffness, so nothing is critical"
-    if nameless := [name for name, one in runs.damping_ratio_by_law.items() if not bool(one.isfinite().all())]:
+    if nameless := runs.laws_without_ratio:
         which = " and ".join(nameless)
         return f"no damping ratio can be stated: {which} has none that could be worked out at {_velocity(runs)}"
     low, high = float(ratio.min()), float(ratio.max())

@@ -43,6 +43,7 @@ FAR, BARELY, BAD = (10.0, 1.0), (2.0, 1.0), (10.0, 9.0)  # the last is wrong wha
 def found(records, monkeypatch, outcome=FITTED, **more):
     monkeypatch.setattr(own_marks, "opened", opened)
     evidence = Evidence(tuple(Record(left) for left in records), **more)
+    outcome.holdout = opened(outcome, evidence).holdout
     return [MESH_PHASE in record.own for record in own_marks.with_own_marks(evidence, outcome).holdout]
 
 

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from gear_damping.explanation import search
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps import revise, single
@@ -77,10 +78,11 @@ def test_a_model_without_a_cause_goes_on_only_as_long_as_it_may_take_a_cause_s_p
     monkeypatch.setattr(benches, "fit_hypothesis", fitted)
     monkeypatch.setattr(benches, "_without", lambda hypothesis, name: hypothesis)
     monkeypatch.setattr(benches.Bench, "is_as_good", lambda *_: is_as_good)
-    settings = SearchSettings(least_share=0.3)
-    best = outcome(0.1, hypothesis=None)
-    said = bench(settings, has=system.has).as_good_without(best, NAMES[0], before)
-    assert (said is found) == is_as_good
+    known = bench(SearchSettings(least_share=0.3), has=system.has, is_over=lambda: False)
+    best = fit(NAMES[0])
+    best.outcome = outcome(0.1, hypothesis=None)
+    said = search._calibrated_anew(State(known, before, before), best)
+    assert (said is not None and said.outcome is found) == is_as_good
     assert asked == [pytest.approx(reach)]
 
 

@@ -10,6 +10,7 @@ from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import State
 from gear_damping.identification.oscillator.linear_model import FORCE
+from gear_damping.physics.model import Prepared
 
 Told = Mapping[str, Mapping[str, Any]]  # fitted parameters by flat name, as `final_parameters` has them
 BACK = 0.02  # of the way that a record goes: what start and noise take it back
@@ -29,14 +30,12 @@ def acts_as(state: State) -> list[str]:
 
 def also_as(state: State) -> list[str]:
     """A sentence for each cause that something else would do the same as, where no sensor on a shaft parts the two."""
-    outcome, evidence = state.outcome, state.bench.evidence
-    if any(channel.derivatives for record in evidence.fit for channel in record.channels):
-        return []
-    model = outcome.hypothesis.model
-    base = model.prepare(model.values(1, **outcome.flat_given())).base
-    numbers = {name: float(value[0]) for name, value in base.items() if value.numel() == 1}
+    outcome = state.outcome
     told = [(cause.effect, cause.effect.cause.also) for cause in state.accepted if cause.effect.cause.also]
-    said = (also(effect.chosen, outcome.values_of(effect.name), numbers) for effect, also in told)
+    if not told or state.bench.evidence.has_rates:
+        return []
+    base = {name: float(value[0]) for name, value in _prepared(outcome).base.items() if value.numel() == 1}
+    said = (also(effect.chosen, outcome.values_of(effect.name), base) for effect, also in told)
     return [sentence for sentence in said if sentence]
 
 
@@ -93,9 +92,14 @@ def _is_one_way(outcome: Outcome) -> bool:
     return True
 
 
-def _stiffness(outcome: Outcome) -> float:
+def _prepared(outcome: Outcome) -> Prepared:
+    """The model with its fitted values, a batch of one."""
     model = outcome.hypothesis.model
-    return float(mean_stiffness(model, model.prepare(model.values(1, **outcome.flat_given())))[0])
+    return model.prepare(model.values(1, **outcome.flat_given()))
+
+
+def _stiffness(outcome: Outcome) -> float:
+    return float(mean_stiffness(outcome.hypothesis.model, _prepared(outcome))[0])
 
 
 def _amplitude(outcome: Outcome) -> float:

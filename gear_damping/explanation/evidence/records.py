@@ -102,6 +102,11 @@ class Evidence:
         return self.base.has(trait)
 
     @property
+    def has_rates(self) -> bool:
+        """Whether a channel of a fitted record is a speed or an acceleration; of a gear pair, of one of its shafts."""
+        return any(channel.derivatives for record in self.fit for channel in record.channels)
+
+    @property
     def has_spring(self) -> bool:
         """Whether something pulls the rig back: the file does not state a stiffness of 0."""
         return has_spring(self.known, self.base)

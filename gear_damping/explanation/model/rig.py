@@ -65,7 +65,7 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
     harmonics = max(_harmonics(record, pinion, values["pinion_speed"]) for record in evidence.fit)
     teeth = {"n_teeth_pinion": pinion, "n_teeth_gear": gear, "indexed": evidence.has_index}
     teeth["standing"] = all_stand(evidence.fit)
-    teeth["on_shafts"] = any(channel.derivatives for record in evidence.fit for channel in record.channels)
+    teeth["on_shafts"] = evidence.has_rates
     return Rig(mesh_harmonics=harmonics, lines=lines, **teeth, **common)
 
 

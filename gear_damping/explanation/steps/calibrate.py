@@ -32,6 +32,7 @@ from gear_damping.explanation.model.nominal_gear_pair import (
     with_edge,
     with_stiffness,
 )
+from gear_damping.explanation.model.own_marks import APART
 from gear_damping.explanation.model.parting_flanks import flanks_part
 from gear_damping.explanation.trials.noisy_load import moves_with_noise
 from gear_damping.identification.observation import MESH_PHASE
@@ -51,8 +52,6 @@ SHORT_PERIODS = 40.0  # natural periods of the first round
 MOST_SCANS = 8  # of the records' angles, each followed by a fit; one where flanks part, which no fit of these follows
 EDGES = (0.0, 0.2, 0.4)  # of a mesh period: of spur teeth, wide ones and helical ones
 STIFFNESSES = (1.0, 0.85, 0.92, 1.08, 1.17)  # times where it begins: with a wrong one angles of records are wrong too
-APART = 1.5  # times the cost of a phase for every record: one phase of all leaves that much where there is none; angles
-# that begin anywhere agree that well once in a thousand times, for three records
 POORLY = 0.05  # of what moved: a stiffness that varies by a fifth leaves about so much behind a model linear in it
 FEWEST_PHASES = 4  # of records: two more than a line has numbers
 SLOPES = 201  # of a line that is tried through phases, up to half a mesh period between rest and the highest speed

@@ -59,15 +59,24 @@ def confirmed(state: State, sealed: Sequence[FitRecord], measurement: Measuremen
         t = _t(state.nominal, state.outcome, state) if state.accepted else 0.0
         return Confirmed(state, state.noise, state.first, state.current, t)
     evidence, noise = _with_sealed(state, sealed, measurement)
-    evidence = with_own_marks(evidence, state.outcome, state.bench.solver)
+    nominal, extended = _both_opened(state, evidence)
+    if (marked := with_own_marks(evidence, extended, state.bench.solver)) is not evidence:
+        evidence = marked
+        nominal, extended = _both_opened(state, evidence)
     bench = replace(state.bench, evidence=evidence)
-    nominal = opened(state.nominal, evidence, bench.solver)
     scatter = calibration_error(nominal, evidence, bench.solver)
     noise = replace(noise, scatter=scatter)
-    extended = opened(state.outcome, evidence, bench.solver, nominal.own) if state.accepted else nominal
     state, t = _validated(_told_apart(replace(state, bench=bench, nominal=nominal, outcome=extended)))
     before, after = (_excess(one, evidence, noise) for one in (nominal, state.outcome))
     return Confirmed(state, noise, before, after, t, is_opened=True)
+
+
+def _both_opened(state: State, evidence: Evidence) -> tuple[Outcome, Outcome]:
+    """The nominal model and the extended one on held-out records; one and the same where nothing is accepted."""
+    nominal = opened(state.nominal, evidence, state.bench.solver)
+    if not state.accepted:
+        return nominal, nominal
+    return nominal, opened(state.outcome, evidence, state.bench.solver, nominal.own)
 
 
 def without(found: Confirmed, name: str) -> Confirmed:

@@ -140,15 +140,12 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         return _not_established(found, before, known, NOT_LESS)
     if not explains_all and (why := _beside_a_rest(before, after, known)):
         return _not_established(found, before, known, why)
+    if not explains_all and _is_part_named(found, taken.share, after, known):
+        left = f"An unexplained residual of {after.percent:.3g} % has none." if after.percent > 0 else WITHIN_NOISE
+        return Verdict(PARTLY, (f"{missing}. Part of it has a name: {said}. {left}", *further))
     if not explains_all:
-        if _is_part_named(found, taken.share, after, known):
-            left = WITHIN_NOISE
-            if after.percent > 0:
-                left = f"An unexplained residual of {after.percent:.3g} % has none."
-            return Verdict(PARTLY, (f"{missing}. Part of it has a name: {said}. {left}", *further))
         why = ANY_FIGURES.format(known.any_figures) if known.any_figures else TOO_MUCH
-        why = OTHER_SIZES if known.is_one is False else why
-        return _not_established(found, before, known, why)
+        return _not_established(found, before, known, OTHER_SIZES if known.is_one is False else why)
     if known.any_figures:
         return _not_established(found, before, known, NO_FIGURE.format(known.any_figures))
     is_at_end = any(found.is_at_bound(cause) for cause in found.accepted)

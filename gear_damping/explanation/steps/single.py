@@ -184,7 +184,7 @@ def _converged_rivals(fits: Sequence[Refit], state: State) -> tuple[Refit, ...]:
         return tuple(fits)
     against = state.outcome if state.accepted else state.nominal
     alike = [fit for fit in fits if fit is best or bench.is_as_good(fit.outcome, best.outcome)]
-    reach = best.outcome.fitted.cost if bench.evidence.has(Trait.PRELOAD) else inf
+    reach = bench.foretold(best.outcome.fitted.cost)
     goals = {id(fit): inf if fit is best else reach for fit in alike}
     ends = [bench.converged(fit, against, goals[id(fit)]) if id(fit) in goals else fit for fit in fits]
     return tuple(sorted(ends, key=lambda fit: fit.outcome.left_out_cost))

@@ -183,25 +183,16 @@ class Bench(Comparison):
             self.fewer[key] = outcome.fitted, found
         return found
 
+    def foretold(self, cost: float) -> float:
+        """A cost that a fit has to reach, or none without a preload: far from linear a fit foretells nothing of it."""
+        return cost if self.evidence.has(Trait.PRELOAD) else inf
+
     def spared(self, outcome: Outcome) -> float:
-        """The cost below which a model without a cause shows that it took less than a cause must; none without preload.
+        """The cost below which a model without a cause shows that it took less than a cause must.
 
         Beside a hundred times as much a fit without that cause creeps for half a minute.
         """
-        if not self.evidence.has(Trait.PRELOAD):
-            return inf
-        return outcome.fitted.cost / max(1 - self.settings.least_share, 1e-9)
-
-    def as_good_without(self, outcome: Outcome, name: str, before: Outcome) -> Outcome | None:
-        """A model without one of its causes that is as good; None where there is none.
-
-        Under a preload the fit is given up where it cannot take of what is left before that cause as much as a cause
-        must: a hundred times above it creeps for half a minute.
-        """
-        hypothesis, initial = _without(outcome.hypothesis, name), InitialValues(after=outcome, is_near=True)
-        ends = Ends(reach=self.goal(before) if self.evidence.has(Trait.PRELOAD) else inf)
-        found = fit_hypothesis(hypothesis, self.evidence, initial, ends=ends, solver=self.solver)
-        return found if self.is_as_good(found, outcome) else None
+        return self.foretold(outcome.fitted.cost / max(1 - self.settings.least_share, 1e-9))
 
     def until_converged(self, outcome: Outcome, reach: float = inf) -> Outcome:
         """A model whose fit is carried on where it had not converged; given up where it cannot reach a cost."""

@@ -4,11 +4,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from math import isfinite
 
-from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.errors import InputError, Problem, nearest, with_article
 from gear_damping.identification.test_plan.asked import PlanCosts, PlanGoal, PlannedSensor, PlannedTests, Unknown
 from gear_damping.identification.test_plan.channels import channels_of
 from gear_damping.identification.test_plan.rig import Rig
-from gear_damping.physics.article import with_article
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import HeldLoad

@@ -17,7 +17,7 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
-from gear_damping.errors import InputError, Problem, reading
+from gear_damping.errors import InputError, Problem, reading, with_article
 from gear_damping.measurement import formats as room
 from gear_damping.measurement.formats.table import Table, refuse_size
 from gear_damping.own_files import REMEDY, classes_of, errors_in, load_module, modules_of
@@ -63,9 +63,10 @@ def _own(read: Reader, place: Path) -> Reader:
         with errors_in({str(place): KEY}):
             found = read(path, max_bytes)
         if not isinstance(found, Table):
-            kind = type(found).__name__
-            article = "an" if kind[0] in "aeiou" else "a"
-            rule, remedy = f"read gives {article} {kind}", "return ArrayTable(path, [Held(...), ...])"
+            rule, remedy = (
+                f"read gives {with_article(type(found).__name__)}",
+                "return ArrayTable(path, [Held(...), ...])",
+            )
             raise InputError(Problem(KEY, rule, str(place), remedy))
         return found
 

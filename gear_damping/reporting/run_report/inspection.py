@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from gear_damping.errors import with_article
 from gear_damping.reporting.numbers import NOTHING
 from gear_damping.reporting.page.picture import Picture
 from gear_damping.reporting.page.render import words
@@ -43,7 +44,7 @@ def _of_file(left: Left, content: Mapping[str, Any]) -> RunReport:
 def _of_measurement(left: Left, content: Mapping[str, Any]) -> RunReport:
     faults = content["data_problems"]
     records, system = _counted(content["records"], "record"), words(content["system"])
-    first = f"{content['file']} declares {records} of {'an' if system[0] in 'aeiou' else 'a'} {system}."
+    first = f"{content['file']} declares {records} of {with_article(system)}."
     found = f"{faults} data problems were found in them." if faults else "No data problem was found in them."
     channels = list(dict.fromkeys(name for one in content["records"] for name, _ in one["channels"]))
     sections = [Section("Every channel", pictures=_picture(left, channels))]
