@@ -14,6 +14,7 @@ from gear_damping.measurement.timebase import TimeBase, cubic_spline, monotone_s
 from gear_damping.units import parse_unit, to_si
 
 TURN = 2 * np.pi  # rad in one turn of a shaft
+BEYOND = 2.5  # steps of pulses that a record may go on past them: a pulse lost at its end, and its stamps are rounded
 FEWEST_PULSES = 2  # in a record: one alone tells no speed
 WITHIN_A_TURN = 1.01  # that an angle which begins again may span: a scale is a little off, and an end is rounded
 COUNTERS = (16, 24, 32)  # bits of the registers that run over in counter cards
@@ -89,7 +90,7 @@ def angle_from_pulses(
 
     Raises:
         InputError: fewer than two pulses, pulses that go back in time, or a record that begins
-            or ends more than one pulse outside them.
+            or ends more than two pulses outside them.
     """
     if pulses.size < 2:
         rule = f"{pulses.size} pulse(s) found, at least 2 are needed"
@@ -100,7 +101,7 @@ def angle_from_pulses(
         rule = f"pulse {where} does not come after the one before"
         raise InputError(Problem(key, rule, remedy="sort the pulses, remove repeated ones", source=source))
     before, after = pulses[0] - time[0], time[-1] - pulses[-1]
-    if before > 1.5 * steps[0] or after > 1.5 * steps[-1]:
+    if before > BEYOND * steps[0] or after > BEYOND * steps[-1]:
         rule = f"pulses from {pulses[0]:.6g} to {pulses[-1]:.6g} s do not cover the record"
         rule += f" ({time[0]:.6g} to {time[-1]:.6g} s)"
         raise InputError(Problem(key, rule, remedy="shorten the record with slice", source=source))

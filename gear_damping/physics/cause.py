@@ -14,11 +14,19 @@ SHAFTS = ("pinion", "gear")
 
 @dataclass(frozen=True)
 class Mode:
-    """A mass on a spring behind another one: its frequency alone in Hz, its mass over the other, its damping ratio."""
+    """A mass on a spring behind another one.
+
+    Args:
+        frequency: Its own on that spring, in Hz.
+        mass_ratio: Its mass over the other.
+        damping_ratio: Of that spring.
+        drag_rate: What brakes it against the ground, per unit of its mass, in 1/s.
+    """
 
     frequency: float
     mass_ratio: float
     damping_ratio: float
+    drag_rate: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -22,11 +22,11 @@ def driven(folder, mode, channel="displacement", noise=NOISE):
     rng, time = np.random.default_rng(7), np.arange(COUNT) / RATE
     rig = np.array([[0, 1, 0, 0], [0, -DAMPING, 0, 0], [0, 0, 0, 1], [0, 0, 0, -1.0]])
     if mode is not None:
-        frequency, ratio, zeta = mode
+        frequency, ratio, zeta, *drag = mode
         spring, damper = (2 * pi * frequency) ** 2, 4 * pi * frequency * zeta
         pull = np.array([spring, damper, -spring, -damper])
         rig[1] -= ratio * pull
-        rig[3] = pull
+        rig[3] = pull - np.array([0, 0, 0, sum(drag)])
     unit, seen = CHANNELS[channel]
     loads = [chirp(time, 0.3, 8.0, 9.0), chirp(time, 0.3, 8.0, 6.0), np.sign(rng.normal(0, 1, 40)).repeat(40)]
     records = []
@@ -50,6 +50,18 @@ def test_the_frequency_at_which_the_other_mass_holds_the_first_is_found(tmp_path
     found = driven_mode(records, NOISE * np.ptp(records[0].response.numpy()))
     assert found.frequency == pytest.approx(frequency, rel=0.15)
     assert ratio / 2 < found.mass_ratio < 1.2 * ratio  # noise of the motion makes it look small
+
+
+def test_a_load_that_the_ground_brakes_is_found_with_its_drag(tmp_path):
+    records = evidence_of(driven(tmp_path, (2.5, 0.6, 0.01, 12.0), "velocity")).fit
+    found = driven_mode(records, NOISE * np.ptp(records[0].response.numpy()))
+    assert (found.frequency, found.mass_ratio) == pytest.approx((2.5, 0.6), rel=0.35)
+    assert 6.0 < found.drag_rate < 24.0
+
+
+def test_a_load_that_nothing_else_brakes_has_no_drag(tmp_path):
+    records = evidence_of(driven(tmp_path, (2.5, 0.6, 0.01), "velocity")).fit
+    assert driven_mode(records, NOISE * np.ptp(records[0].response.numpy())).drag_rate == 0
 
 
 def test_a_load_may_count_the_other_way_round(tmp_path):
@@ -76,6 +88,17 @@ def test_loads_that_are_not_measured_drive_nothing(tmp_path):
     for record in records:
         record.inputs.clear()
     assert driven_mode(records, 0.0) is None
+
+
+@pytest.mark.slow
+def test_a_braked_load_behind_a_soft_shaft_is_named_with_what_brakes_it(tmp_path):
+    content = explain(driven(tmp_path, (2.5, 0.6, 0.01, 12.0), "velocity", noise=10 * NOISE)).content
+    (cause,) = content["causes"]
+    assert (content["verdict"], cause["name"]) == ("explained", "second_mode")
+    for name, true, tolerance in (("frequency", 2.5, 0.05), ("mass_ratio", 0.6, 0.1), ("drag_rate", 12.0, 0.1)):
+        low, high = cause["parameters"][name]["interval95"]
+        assert low < true < high
+        assert cause["parameters"][name]["value"] == pytest.approx(true, rel=tolerance)
 
 
 @pytest.mark.parametrize("mode", [(2.5, 1.7, 0.01), None])

@@ -127,7 +127,7 @@ def test_pendulums_that_pass_their_motion_to_and_fro_have_a_second_mode(tmp_path
 
 
 def test_a_mode_gives_back_what_it_took_where_coupling_is_more_than_detuning():
-    mode, values = SecondMode(), {"frequency": 5.0, "mass_ratio": 0.0016, "damping_ratio": 1e-5}
+    mode, values = SecondMode(), {"frequency": 5.0, "mass_ratio": 0.0016, "damping_ratio": 1e-5, "drag_rate": 0.0}
     assert mode.exchange_time(values, 5.0) == pytest.approx(1 / (5 * 0.04))
     assert mode.exchange_time(values, 5.1) == pytest.approx(1 / math.hypot(0.1, 5.1 * 0.04))
     assert mode.exchange_time(values, 5.5) == math.inf
@@ -157,9 +157,9 @@ def poles_of(own, stiffness, damping):
 @pytest.mark.parametrize(
     ("own", "stiffness", "damping"),
     [
-        ({"mass_ratio": 0.0058, "frequency": 0.6326, "damping_ratio": 3e-4}, 17.525, 0.0067),
-        ({"mass_ratio": 0.2, "frequency": 3.0, "damping_ratio": 0.05}, 100.0, 0.6),
-        ({"mass_ratio": 0.02, "frequency": 1.5, "damping_ratio": 0.01}, 100.0, 0.2),
+        ({"mass_ratio": 0.0058, "frequency": 0.6326, "damping_ratio": 3e-4, "drag_rate": 0.0}, 17.525, 0.0067),
+        ({"mass_ratio": 0.2, "frequency": 3.0, "damping_ratio": 0.05, "drag_rate": 0.0}, 100.0, 0.6),
+        ({"mass_ratio": 0.02, "frequency": 1.5, "damping_ratio": 0.01, "drag_rate": 0.0}, 100.0, 0.2),
     ],
 )
 def test_masses_with_the_same_modes_exchange_their_energy(own, stiffness, damping):
@@ -177,9 +177,9 @@ def test_masses_with_the_same_modes_exchange_their_energy(own, stiffness, dampin
 
 
 def test_modes_that_no_such_masses_share_their_damping_by_stay_as_they_were_found():
-    own = {"mass_ratio": 0.05, "frequency": 0.5, "damping_ratio": 0.1}
+    own = {"mass_ratio": 0.05, "frequency": 0.5, "damping_ratio": 0.1, "drag_rate": 0.0}
     assert SecondMode.cause.settles(own, 100.0, 0.3) == (own, 100.0, 0.3)
-    one = {"mass_ratio": 1e-18, "frequency": 10 / (2 * math.pi), "damping_ratio": 0.01}
+    one = {"mass_ratio": 1e-18, "frequency": 10 / (2 * math.pi), "damping_ratio": 0.01, "drag_rate": 0.0}
     assert SecondMode.cause.settles(one, 100.0, 0.2) == (one, 100.0, 0.2)  # two modes that are one
 
 
@@ -195,7 +195,8 @@ def test_both_modes_of_one_free_swing_are_told_though_no_mass_is(tmp_path):
     path.write_text(yaml.safe_dump({"system": "oscillator", "records": [{"file": "a.csv", "channels": channels}]}))
     content = explain(load_measurement(path)).content
     assert (content["verdict"], [cause["name"] for cause in content["causes"]]) == ("explained", ["second_mode"])
-    assert set(content["causes"][0]["fixed"]) == {"mass_ratio"}
+    fixed = content["causes"][0]["fixed"]
+    assert (set(fixed), fixed["drag_rate"]) == ({"mass_ratio", "drag_rate"}, 0)
     (said,) = [one for one in content["sentences"] if one.startswith("The two modes lie at")]
     numbers = [float(one) for one in re.findall(r"[0-9.]+[0-9]", said)]
     for k, (frequency, ratio) in enumerate(modes):

@@ -8,6 +8,8 @@ import torch
 from effect_bench import Bench
 from gear_case import GearCase
 
+from gear_damping.physics.effects.second_mode import SecondMode
+
 CASE = GearCase()
 SECOND_MODE = {"stiffness": 9.0, "second_mode.mass_ratio": 0.2, "second_mode.frequency": 1.0}
 CONSTANT = {"fourier_mesh_stiffness.maximum": 3e8, "fourier_mesh_stiffness.minimum": 3e8}
@@ -222,3 +224,15 @@ def test_a_second_mode_damps_by_the_rate_between_the_masses():
     assert matrix[3, 3] == pytest.approx(-damper, rel=1e-9)
     assert matrix[1, 3] == pytest.approx(0.2 * damper, rel=1e-9)
     assert matrix[3, 1] == pytest.approx(damper, rel=1e-9)
+
+
+def test_a_second_mass_is_braked_by_the_ground_too():
+    given = SECOND_MODE | {"second_mode.damping_ratio": 0.1, "second_mode.drag_rate": 3.0}
+    matrix = jacobian(Bench("second_mode", {}, given, batch=1))
+    damper = 2 * 0.1 * 2 * math.pi
+    assert matrix[3, 3] == pytest.approx(-damper - 3.0, rel=1e-9)
+    assert (matrix[1, 3], matrix[3, 1]) == pytest.approx((0.2 * damper, damper), rel=1e-9)
+    own = {name.partition(".")[2]: value for name, value in given.items() if "." in name}
+    poles = SecondMode.cause.modes(own, 9.0, -matrix[1, 1] - 0.2 * damper)
+    both = np.linalg.eigvals(matrix)
+    np.testing.assert_allclose(np.sort_complex(poles), np.sort_complex(both[both.imag > 0]), rtol=1e-9)

@@ -20,10 +20,11 @@ FORCE = "force"
 PLACES = 120  # between the lowest and the highest frequency that the load holds: fits find the way from one to the next
 MOST_LINES = 2000  # of a record: more tell the place of a resonance no better
 DAMPED = (0.003, 0.03, 0.2)  # damping ratios that are tried, the width of a resonance apart
+BRAKED = (0.1, 0.3, 1.0)  # of the mass by the ground, over its frequency: from a line to none
 DRIVEN = 1e-3  # of the largest power of the load in any line: less drives nothing
 SEEN = 0.99  # of the power of the rate beyond the noise, which grows with the frequency: above there is hardly any
 ABOVE = 2.0  # times the power of the noise: what one mass leaves is more of the motion than of the sensor
-TAKES = 0.5  # of what one mass alone leaves: where less is of the other mass, something else is missed, as a friction
+TAKES = 0.5  # of what a simpler one leaves: where less is of the other mass, something else is missed, as a friction
 LOWEST = 3  # lines of a record: below, the window's own width blurs the motion into its rates
 
 
@@ -65,14 +66,20 @@ def driven_mode(records: Sequence[FitRecord], noise: float) -> Mode | None:
     if not lines:
         return None
     low, high = min(one.angular[0] for one in lines), max(one.angular[-1] for one in lines)
-    tried = [(at, zeta) for at in np.geomspace(low, high, PLACES) for zeta in DAMPED]
-    alone, _ = _left(lines, None)
-    found = [(*_left(lines, one), *one) for one in tried]
-    left, ratio, angular, damping = min(found, key=lambda one: one[0])
+    places = [(float(at), zeta) for at in np.geomspace(low, high, PLACES) for zeta in DAMPED]
     sensor = sum(one.noise for one in lines) / sum(one.power for one in lines)
-    if alone < ABOVE * sensor or left - sensor >= (1 - TAKES) * (alone - sensor):
+    alone, _ = _left(lines, None)
+    if alone < ABOVE * sensor:
         return None
-    return Mode(float(angular) / (2 * pi), float(ratio), float(damping))
+    free, braked = (
+        min((*_left(lines, (at, zeta, brake * at)), at, zeta, brake * at) for at, zeta in places for brake in brakes)
+        for brakes in ((0.0,), BRAKED)
+    )
+    takes = (1 - TAKES) * (free[0] - sensor)
+    left, ratio, angular, damping, drag = braked if braked[0] - sensor < takes else free
+    if left - sensor >= (1 - TAKES) * (alone - sensor):
+        return None
+    return Mode(angular / (2 * pi), ratio, damping, drag)
 
 
 def _lines(record: FitRecord, noise: float) -> _Lines | None:
@@ -97,15 +104,21 @@ def _lines(record: FitRecord, noise: float) -> _Lines | None:
     return _Lines(angular[kept], weight * load[kept], weight * rate[kept], weight**2 * float(sensor[kept].sum()))
 
 
-def _left(lines: Sequence[_Lines], mode: tuple[float, float] | None) -> tuple[float, float]:
-    """Share of the power of all rates that is left, and the other mass over the first, beside a mode (rad/s, zeta)."""
+def _left(lines: Sequence[_Lines], mode: tuple[float, float, float] | None) -> tuple[float, float]:
+    """Share of the power of all rates that is left, and the other mass over the first, beside a mode.
+
+    Args:
+        lines: Of all records.
+        mode: Its frequency in rad/s, its damping ratio and what brakes it against the ground, in 1/s.
+    """
     columns, wanted = [], []
     for one in lines:
         own = [one.load / (1j * one.angular), -one.rate / (1j * one.angular)]
         if mode is not None:
-            natural, zeta = mode
+            natural, zeta, drag = mode
             spring = natural**2 + 2j * zeta * natural * one.angular
-            own.append(-one.rate * spring / (spring - one.angular**2))
+            inert = 1j * drag * one.angular - one.angular**2
+            own.append(one.rate * spring * inert / (one.angular**2 * (spring + inert)))
         *known, rate = (np.r_[column.real, column.imag] for column in (*own, one.rate))
         columns.append(np.stack(known, 1))
         wanted.append(rate)

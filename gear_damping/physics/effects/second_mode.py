@@ -25,6 +25,7 @@ NEAR = 1.15  # of the line that it is sought at: farther, it would take the plac
 COUPLED = 0.9  # of the largest ratio of masses with the same modes: nearly in tune, and their dampings still told apart
 LIGHTEST = 1e-9  # ratio of the masses that the parameter may have at least
 TURNS = 20  # of what damping adds, each of which leaves some of its square of what the one before left
+SLOWEST, FASTEST = 1e-3, 10.0  # drag over the frequency of a load alone: a thousandth of its swing, and no swing at all
 DAMPED = (1e-5, 0.3)  # damping ratios of what shows as a line
 
 
@@ -36,8 +37,21 @@ def _at_the_lines(rig: Rig) -> tuple[Recipe, ...]:
     sought = [(frequency, ratio) for frequency in rig.frequencies for ratio in RATIOS]
     sought += [(rig.values["natural_frequency"] / (2 * pi), ratio) for ratio in BEATS if rig.swells]
     found = tuple(_begun(Mode(frequency, ratio, 0.01), HIGH, NEAR) for frequency, ratio in sought)
-    found = found if rig.mode is None else (*found, _begun(rig.mode, HEAVY, ABOUT))
+    found = found if rig.mode is None else (*found, _behind_a_drive(rig.mode))
     return tuple(replace(one, settled=("mass_ratio",)) for one in found) if rig.swings_freely else found
+
+
+def _behind_a_drive(mode: Mode) -> Recipe:
+    """A load on a spring behind a drive, which the ground brakes where the records ask for it."""
+    bare, rate = _begun(mode, HEAVY, ABOUT), 2 * pi * mode.frequency
+    if mode.drag_rate == 0:
+        return bare
+    return replace(
+        bare,
+        scanned={**bare.scanned, "drag_rate": mode.drag_rate},
+        within={**bare.within, "second_mode.drag_rate": (SLOWEST * rate, FASTEST * rate)},
+        sharpest=("drag_rate",),
+    )
 
 
 def _begun(mode: Mode, most: float, near: float) -> Recipe:
@@ -62,13 +76,13 @@ def _begun(mode: Mode, most: float, near: float) -> Recipe:
 def _poles(values: Mapping[str, float], stiffness: float, damping: float) -> list[complex]:
     """One pole of each of the two modes, in 1/s, the slower one first; what is overdamped has none that swings.
 
-    Both masses at rest at first: (s^2 + c s + k + mu (w^2 + 2 zeta w s)) (s^2 + 2 zeta w s + w^2) =
+    Both masses at rest at first: (s^2 + c s + k + mu (w^2 + 2 zeta w s)) (s^2 + (2 zeta w + d) s + w^2) =
     mu (w^2 + 2 zeta w s)^2.
     """
     rate = 2 * pi * values["frequency"]
     link = np.array([2 * values["damping_ratio"] * rate, rate**2])
     first = np.polyadd([1.0, damping, stiffness], values["mass_ratio"] * link)
-    second = np.array([1.0, *link])
+    second = np.array([1.0, link[0] + values["drag_rate"], link[1]])
     poles = np.roots(np.polysub(np.polymul(first, second), values["mass_ratio"] * np.polymul(link, link)))
     return sorted(poles[poles.imag > 0], key=abs)
 
@@ -80,7 +94,7 @@ def _as_coupled(values: Mapping[str, float], stiffness: float, damping: float) -
     Coefficients of the polynomial of the poles give all but the mass, by turns for what damping adds to its middle.
     """
     poles = _poles(values, stiffness, damping)
-    if len(poles) < 2:
+    if len(poles) < 2 or values["drag_rate"] > 0:
         return dict(values), stiffness, damping
     _, cubic, square, linear, product = np.poly([*poles, *np.conj(poles)]).real
     ratio = COUPLED * (square**2 / (4 * product) - 1)
@@ -107,12 +121,13 @@ class SecondMode(ExtraStates, Load):
     """
 
     name = "second_mode"
-    equation = "x'' ... + mu (w^2 (x - z) + 2 zeta w (x' - z')), z'' = w^2 (x - z) + 2 zeta w (x' - z') - a_b"
+    equation = "x'' ... + mu (w^2 (x - z) + 2 zeta w (x' - z')), z'' = w^2 (x - z) + 2 zeta w (x' - z') - d z' - a_b"
     reference = "Den Hartog (1956), Mechanical Vibrations, ch. 3"
     parameters: ClassVar = (
         Parameter("mass_ratio", "1", 0.05, "mu, of the second mass over the first", 1e-9, 1e6),
         Parameter("frequency", "Hz", 1.0, "w / 2 pi, of the second mass on its spring alone", 1e-9, 1e9),
         Parameter("damping_ratio", "1", 0.01, "zeta, of the second mass on its spring alone", 0, 10),
+        Parameter("drag_rate", "1/s", 0.0, "d, what brakes the second mass against the ground, per unit of it", 0, 1e9),
     )
     needs: ClassVar = (Trait.REST,)
     states: ClassVar = {"displacement": "m", "velocity": "m/s"}
@@ -121,8 +136,8 @@ class SecondMode(ExtraStates, Load):
     )
 
     def decay_time(self, values: Mapping[str, float]) -> float:
-        """1 / (zeta w), of the second mass alone."""
-        rate = 2 * pi * values["frequency"] * values["damping_ratio"]
+        """1 / (zeta w + d / 2), of the second mass alone."""
+        rate = 2 * pi * values["frequency"] * values["damping_ratio"] + values["drag_rate"] / 2
         return 1 / rate if rate > 0 else inf
 
     def exchange_time(self, values: Mapping[str, float], natural_frequency_hz: float) -> float:
@@ -136,7 +151,8 @@ class SecondMode(ExtraStates, Load):
         rate = 2 * pi * values["frequency"]
         fastest = torch.sqrt(base["mean_stiffness"] + (1 + values["mass_ratio"]) * rate.square())
         found = {"mass_ratio": values["mass_ratio"], "stiffness": rate.square()}
-        return found | {"damping": 2 * values["damping_ratio"] * rate, "slowest_rate": rate, "fastest_rate": fastest}
+        found |= {"damping": 2 * values["damping_ratio"] * rate, "drag": values["drag_rate"]}
+        return found | {"slowest_rate": rate, "fastest_rate": fastest}
 
     def load_force(self, at: Kinematics, p: Values) -> Tensor:
         """What the second mass pulls at the first."""
@@ -144,7 +160,7 @@ class SecondMode(ExtraStates, Load):
 
     def state_rates(self, at: Kinematics, p: Values) -> dict[str, Tensor]:
         """The second mass on its spring, on a base that may move."""
-        rate = -self._pull(at, p)
+        rate = -self._pull(at, p) - p["drag"] * at.extra[RATE]
         if "base_acceleration" in at.inputs:
             rate = rate - at.inputs["base_acceleration"]
         return {"displacement": at.extra[RATE], "velocity": rate}
