@@ -1,7 +1,8 @@
 """Torsion of the shaft or coupling between a gear and the machine on its shaft."""
 
+from collections.abc import Mapping
 from math import inf
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import torch
 from torch import Tensor
@@ -55,6 +56,36 @@ def _inertia(rig: Rig, shaft: str) -> float:
     return rig.values[f"inertia_{shaft}"] + rig.values[f"inertia_{other}"] * ratio**2
 
 
+def _on_the_other_shaft(options: Mapping[str, Any], values: Mapping[str, float], base: Mapping[str, float]) -> str:
+    """The shaft and machine on the other side that answer to the mesh in the same way.
+
+    A twist u about that of a steady torque follows u'' = -(1/J + 1/I) k u + r (N - N_0) / I, and pulls with
+    m_e r k u / I: k (r / I)^2 and k (1/J + 1/I) are all that the teeth feel of it.
+    """
+    own = options["shaft"]
+    other = SHAFTS[1 - SHAFTS.index(own)]
+    share, wheel = _share(own, base), {shaft: _wheel(shaft, base) for shaft in SHAFTS}
+    scale = (share * base[f"base_radius_{other}"] / ((1 - share) * base[f"base_radius_{own}"])) ** 2
+    machine = (1 / values["motor_inertia"] + 1 / wheel[own]) / scale - 1 / wheel[other]
+    if machine <= 0:  # no machine is heavy enough
+        return ""
+    return (
+        f"Where the torques are steady, a shaft of the {other} of {scale * values['stiffness']:.3g} N*m/rad before a "
+        f"machine of {1 / machine:.3g} kg*m^2 would do the same as that of the {own} (`shaft_torsion`)."
+    )
+
+
+def _share(own: str, base: Mapping[str, Any]) -> Any:
+    """Of the motion along the line of action that a force there gives to the gear on a shaft."""
+    pinion, gear = (base[f"base_radius_{shaft}"] ** 2 / base[f"inertia_{shaft}"] for shaft in SHAFTS)
+    return (pinion if own == "pinion" else gear) / (pinion + gear)
+
+
+def _wheel(own: str, base: Mapping[str, Any]) -> Any:
+    """Inertia of the gear on a shaft, which is scaled where an equivalent mass was given."""
+    return base["equivalent_mass"] * base[f"base_radius_{own}"] ** 2 / _share(own, base)
+
+
 class ShaftTorsion(ExtraStates, LoadPath):
     """The torque acts on a motor, and reaches the pinion through a shaft; or a brake holds the gear through one.
 
@@ -78,17 +109,15 @@ class ShaftTorsion(ExtraStates, LoadPath):
         "the torsion of a shaft or coupling",
         _on_either_shaft,
         separated_by="bearing",
+        also=_on_the_other_shaft,
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """The shaft between the inertias, which are scaled where an equivalent mass was given."""
-        own, other = self.chosen["shaft"], SHAFTS[1 - SHAFTS.index(self.chosen["shaft"])]
+        own = self.chosen["shaft"]
         stiffness, motor, radius = values["stiffness"], values["motor_inertia"], base[f"base_radius_{own}"]
-        own_part = radius**2 / base[f"inertia_{own}"]
-        other_part = base[f"base_radius_{other}"] ** 2 / base[f"inertia_{other}"]
-        share = own_part / (own_part + other_part)
-        wheel = base["equivalent_mass"] * radius**2 / share
-        gears = wheel + wheel * own_part / other_part  # the other gear as this shaft feels it
+        share, wheel = _share(own, base), _wheel(own, base)
+        gears = wheel + wheel * share / (1 - share)  # the other gear as this shaft feels it
         damping = 2 * values["damping_ratio"] * torch.sqrt(stiffness / (1 / motor + 1 / gears))
         mesh_rate = base["mean_stiffness"] / base["equivalent_mass"]
         return {
