@@ -292,6 +292,16 @@ def test_a_faint_cause_takes_a_quarter_of_what_is_not_random(left, word):
     assert verdict(search(accepted=(cause(),), not_random=left), MUCH, NOTHING).word == EXPLAINED
 
 
+@pytest.mark.parametrize(("after", "word"), [(0.45, PARTLY), (1.2, UNEXPLAINED)])
+def test_where_noise_hides_what_is_missed_the_fall_of_the_whole_held_out_error_counts(after, word):
+    found = search(accepted=(cause(share=0.7),), left=True, sensor=40.0, rest=15.0, not_random=0.5)
+    before, left = (excess_of(percent, misfit, threshold=5.0) for percent, misfit in ((1.6, 1.6), (-1.4, after)))
+    said = verdict(found, before, left, is_one=True)
+    assert said.word == word
+    if word == PARTLY:
+        assert "With it the squared error of the held-out records falls by 71.9 %." in said.sentences
+
+
 @pytest.mark.parametrize(
     ("fitted", "threshold", "word"), [(60.0, 15e3, UNEXPLAINED), (2.0, 15e3, CONSISTENT), (60.0, 15.0, CONSISTENT)]
 )

@@ -328,10 +328,15 @@ class _Taken:
 
 
 def _taken(found: State, before: Excess, after: Excess) -> _Taken:
-    """Of held-out power, or of what is not random where that is small."""
+    """Of held-out power, or of what is not random where that is small.
+
+    Where what looks random is as large as what is missed, all of the held-out error may still fall by more.
+    """
     seen, left = found.seen, found.left
     if not before.significant and seen is not None and left is not None and seen.taken:
-        return _Taken(1 - min(left.taken / seen.taken, 1.0), "what is not random in the fitted records", is_faint=True)
+        not_random = _Taken(1 - min(left.taken / seen.taken, 1.0), "what is not random in the fitted records", True)
+        error = _Taken(1 - after.misfit / before.misfit, "the squared error of the held-out records", True)
+        return max(not_random, error, key=lambda one: one.share)
     missing = before.of_signal
     share = (missing - after.percent) / missing if missing > 0 else 0.0
     return _Taken(min(share, 1.0), "the held-out excess")  # what is left may by chance be below noise
