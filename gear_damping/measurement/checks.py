@@ -45,7 +45,8 @@ _LEAST_STRAY = 0.1  # of the deviation of all values, below which one tells noth
 _MOST_STRAYS = 0.01  # of the samples; more are no single ones
 _LISTED = 5  # of them in a message
 _SPEEDS = ("velocity", "pinion_speed", "gear_speed")
-APPLIED = (*INPUTS, "pinion_angle", "pinion_speed")  # what drives the system
+TURNING = ("pinion_angle", "pinion_speed")  # that a shaft turns
+APPLIED = (*INPUTS, *TURNING)  # what drives the system
 
 
 def clipped_at(values: NDArray[np.float64]) -> tuple[str, NDArray[np.bool_]] | None:

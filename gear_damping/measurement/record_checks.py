@@ -16,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_damping.measurement.checks import APPLIED, STRUCK, check_channel
+from gear_damping.measurement.checks import STRUCK, TURNING, check_channel
 from gear_damping.measurement.encoders import FROM_ENCODERS
 from gear_damping.measurement.irregular_stamps import written_on_change
 from gear_damping.measurement.record import Channel, Finding, Record
@@ -236,12 +236,15 @@ def _rests_elsewhere(record: Record) -> Finding | None:
 
 
 def _oversampled(record: Record) -> Finding | None:
-    """A response whose fastest content has more than a hundred samples a period."""
+    """A record whose fastest content has more than a hundred samples a period.
+
+    Loads count: a slide that drifts slowly answers to them with little of its energy.
+    """
     if not record.uniform:
         return None
     fastest = 0.0
     for channel in record.channels.values():
-        if channel.name not in (*APPLIED, *WHOLE_SPEEDS):
+        if channel.name not in (*TURNING, *WHOLE_SPEEDS):
             fastest = max(fastest, _fastest_content(channel.values, record.sampling_rate))
     if fastest == 0.0 or record.sampling_rate <= SAMPLES_PER_PERIOD * fastest:
         return None

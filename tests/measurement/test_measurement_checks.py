@@ -229,6 +229,12 @@ def test_oversampling_is_a_note(bench):
     assert (finding.kind, finding.severity) == ("oversampled", "note")
 
 
+def test_what_answers_slowly_to_a_fast_load_is_not_oversampled(bench):
+    _errors(bench)[:] = 8 + 2 * np.sin(2 * np.pi * 100 * bench.columns["t"])
+    bench.columns["T1"] = 150 + 10 * np.sin(2 * np.pi * 900 * bench.columns["t"])
+    assert bench.load().findings == ()
+
+
 @pytest.mark.parametrize("teeth", [33, 34])
 def test_teeth_that_mesh_beyond_the_band_are_a_note(bench, teeth):
     bench.content["parameters"]["n_teeth_pinion"] = {"value": teeth}

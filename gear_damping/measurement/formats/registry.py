@@ -102,7 +102,8 @@ def read_table(path: Path, max_bytes: int = MAX_BYTES, known: Mapping[str, Reade
     """
     suffix, known = path.suffix.lower(), builtin_readers() if known is None else known
     if suffix not in known:
-        remedy = f"save it as one of {', '.join(sorted(known))}; a format of your own: {KEY}=[its file]"
+        remedy = "add .txt to its name where it is a table in text, or "
+        remedy += f"save it as one of {', '.join(sorted(known))}; a format of your own: {KEY}=[its file]"
         raise InputError(Problem("file", f"unknown format '{suffix}'", str(path), remedy))
     with reading(path), path.open("rb") as file:
         size = os.fstat(file.fileno()).st_size
