@@ -60,7 +60,7 @@ class HystereticDamping(ExtraStates, DampingForce):
     equation = "F_d = beta k z, z' = delta' - |z / z_y|^n (delta' + |delta'| sign z) / 2"
     reference = "Wen (1976), J. Eng. Mech. Div. ASCE 102(2)"
     parameters: ClassVar = (
-        Parameter("share", "1", 0.02, "beta, share of the mean stiffness", 0, 10),
+        Parameter("share", "1", 0.02, "beta, share of the mean stiffness", 0, 1000),
         Parameter("yield_deflection", "m", 2e-6, "z_y, largest hysteretic deflection", 1e-12, 1e9),
         Parameter("exponent", "1", 1.0, "n, sharpness of the yielding", 0.5, 10),
     )
