@@ -101,7 +101,7 @@ def test_a_braked_load_behind_a_soft_shaft_is_named_with_what_brakes_it(tmp_path
         assert cause["parameters"][name]["value"] == pytest.approx(true, rel=tolerance)
 
 
-@pytest.mark.parametrize("mode", [(2.5, 1.7, 0.01), None])
+@pytest.mark.parametrize("mode", [pytest.param((2.5, 1.7, 0.01), marks=pytest.mark.slow), None])
 def test_a_beam_on_a_motor_is_named_and_a_motor_alone_is_not(tmp_path, mode):
     content = explain(driven(tmp_path, mode, noise=10 * NOISE)).content
     if mode is None:
