@@ -85,7 +85,7 @@ class GearParameters(Declared):
         "Mesh stiffness with the smaller number.", START
     )
     contact_ratio: Annotated[Quantity, Measured("1", uncertain=True, within=(1, 2), beyond=MORE_PAIRS)] = key(
-        "Contact ratio.", START
+        "Contact ratio; of helical teeth in contact by two and three pairs 1 less, 1.3 of 2.3.", START
     )
     damping_ratio: Annotated[Quantity, Ratio("1", uncertain=True, excluded=UNDAMPED)] = key(
         "Viscous damping ratio of the mesh.", START

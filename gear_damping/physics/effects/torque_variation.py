@@ -23,9 +23,17 @@ class TorqueVariation(Load, Switch):
     equation = "T1(t) = T1 + steps | ramp | A sin(2 pi f t + phi)"
     reference = "Yousfi et al. (2026), varying torque"
     parameters: ClassVar = (
-        Parameter("step_times", "s", (0.0125, 0.025, 0.0375), "when the torque steps", 0, 1e6, vector=True),
+        Parameter(
+            "step_times",
+            "s",
+            (0.0125, 0.025, 0.0375),
+            "when the torque steps, from the beginning of each record",
+            0,
+            1e6,
+            vector=True,
+        ),
         Parameter("step_changes", "N*m", (30.0, -45.0, 30.0), "by how much", -1e6, 1e6, vector=True),
-        Parameter("ramp_start", "s", 0.01, "start of the ramp", 0, 1e6),
+        Parameter("ramp_start", "s", 0.01, "start of the ramp, counted likewise", 0, 1e6),
         Parameter("ramp_end", "s", 0.04, "end of the ramp", 0, 1e6),
         Parameter("ramp_change", "N*m", 30.0, "torque added by the end of the ramp and kept", -1e6, 1e6),
         Parameter("sine_amplitude", "N*m", 15.0, "A", 0, 1e6),
