@@ -142,6 +142,14 @@ def test_a_record_that_was_not_fitted_has_the_error_of_its_load_whatever_colour_
     assert coloured.joined(level).by_record == pytest.approx({"fitted": 0.2, "held": 0.5})
 
 
+@pytest.mark.parametrize(("parts", "held"), [((0.3, 0.6), 1.2), ((0.5, 0.5), 0.5)])
+def test_coloured_noise_that_goes_with_the_floors_does_so_in_records_that_were_not_fitted(parts, held):
+    level = NoiseLevel({"a": 0.1, "b": 0.2, "held": 0.4}, "floor", 1e9, agree=True)
+    own = {name: part**2 for name, part in zip("ab", parts, strict=True)}
+    coloured = Random((), torch.zeros(1, 1), sum(own.values()) / 2, 1.0, own)
+    assert coloured.joined(level).by_record["held"] == pytest.approx(held)
+
+
 def test_the_error_of_a_load_is_no_effect_and_is_expected_in_records_that_were_not_fitted():
     found = calibrated(rig(is_in_motion=False, highest=17.0))
     assert found.evidence.input_noise

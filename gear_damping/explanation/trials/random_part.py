@@ -56,10 +56,17 @@ class Random:
         return len(self.laws) == 1 and not self.is_coloured
 
     def joined(self, noise: NoiseLevel) -> NoiseLevel:
-        """The noise of every record, where the random part is larger than what was known of it."""
+        """The noise of every record, where the random part is larger than what was known of it.
+
+        That of a record that was not fitted may be as much more than its own floor as of those that were.
+        """
         levels = {name: max(level, self._of(name) ** 0.5) for name, level in noise.by_record.items()}
         if levels == noise.by_record:
             return noise
+        if not self.loads and not self.errors and self.by_record.keys() & levels:
+            floor = {name: level for name, level in noise.by_record.items() if name in self.by_record}
+            known, below = (replace(noise, by_record={n: one[n] for n in floor}) for one in (levels, floor))
+            levels |= {n: known.elsewhere(below, own) for n, own in noise.by_record.items() if n not in floor}
         correlation = max(noise.correlation, self.correlation)
         return replace(noise, by_record=levels, correlation=correlation, method=f"{noise.method}; {RANDOM_PART}")
 
