@@ -19,6 +19,7 @@ from gear_damping.measurement.column_kinds import (
     TIME,
     TURNING,
     UNREADABLE,
+    counts_rows,
     kind_of,
     turn_of,
 )
@@ -35,6 +36,7 @@ from gear_damping.measurement.time_column import (
     find_stamps,
     named_clock,
     stamped_rate,
+    unit_by_name,
 )
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 from gear_damping.units import to_si
@@ -155,6 +157,7 @@ def inspect_table(table: Table, clock: str | int | None = None) -> Inspection:
     may_be_rate = _may_be_rate(columns)
     untimed = may_be_rate is None and not any(table.clock(k) for k in range(len(columns)))
     stamps = find_stamps([c if clock in (None, c.reference) else _NOTHING for c in columns], untimed)
+    stamps = None if stamps and _numbers_rows(table, columns[stamps.index], stamps) else stamps
     if stamps is None:
         _refuse_spectrum(table, columns)
     columns, some = _where_filled(columns) if stamps else (columns, "")
@@ -169,6 +172,13 @@ def inspect_table(table: Table, clock: str | int | None = None) -> Inspection:
     found = [_seen(c, stamps, columns, base, length, table.clock(k)) for k, c in enumerate(columns)]
     seen = Inspection(table, tuple(found), length, stamps, base, rows, faults, named, taken or some)
     return replace(seen, columns=tuple(_by_own_clock(seen, column) for column in found))
+
+
+def _numbers_rows(table: Table, column: Column, stamps: Stamps) -> bool:
+    """Whether stamps of no unit that the file says go on by one, beside a rate that it states and they contradict."""
+    if table.stated_rate is None or not stamps.guessed or unit_by_name(column.reference):
+        return False
+    return counts_rows(column.inside) and abs(table.stated_rate[1] * stamps.in_seconds - 1) > _OTHER_PACE
 
 
 def _by_own_clock(found: Inspection, column: Column) -> Column:

@@ -19,14 +19,16 @@ NAMED_UNITS = {  # by the last word of a name in lower case; neither `in` nor `m
 }  # fmt: skip
 _TIMES = {  # the same of time, in six languages, without what also names any clock: `time of day`, `time tag`, `hora`
     "s": "s sec secs second seconds sek sekunde sekunden seconde secondes segundo segundos secondi",
-    "ms": "ms msec msecs msek millis millisecond milliseconds millisekunde millisekunden milliseconde millisecondes",
-    "us": "us µs μs usec usecs micros microsecond microseconds mikrosekunde mikrosekunden microseconde microsecondes",
-    "ns": "ns nsec nsecs nanos nanosecond nanoseconds nanosekunden nanosecondes",
+    "ms": "ms msec msecs msek millis millisec millisecond milliseconds millisekunde millisekunden milliseconde "
+    "millisecondes",
+    "us": "us µs μs usec usecs micros microsec microsecond microseconds mikrosekunde mikrosekunden microseconde "
+    "microsecondes",
+    "ns": "ns nsec nsecs nanos nanosec nanosecond nanoseconds nanosekunden nanosecondes",
     "min": "min mins minute minutes minuten minutos minuti",
     "h": "h hr hrs hour hours stunden heures horas",
     "day": "days tage jours dias",
 }
-_TIME_UNITS = {word: unit for unit, words in _TIMES.items() for word in words.split()}
+TIME_UNITS = {word: unit for unit, words in _TIMES.items() for word in words.split()}
 _OVER = {"s": "s", "s2": "s^2", "s^2": "s^2", "sec": "s", "sec2": "s^2"}  # the last word of a rate, `deg_s`
 _MOVED = ("mm", "um", "cm", "m", "deg", "rad", "mrad", "rev")  # the word before it
 _PAIRS = {
@@ -115,4 +117,4 @@ def time_at_end(reference: str | int, others: Iterable[str] = ()) -> str | None:
     if word.lower().endswith("min"):
         most = name.lower().replace("min", "max")
         return None if word.lower() != "min" or most in [one.lower() for one in others] else "min"  # not of `tMin`
-    return _unit_in(word, _TIME_UNITS)
+    return _unit_in(word, TIME_UNITS)

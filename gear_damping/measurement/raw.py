@@ -227,7 +227,9 @@ class RawReader:
                 rule = "neither time nor sampling_rate is given"
                 said, stated = self._stated_rate()
                 remedy = f"write sampling_rate: {stated:.6g} Hz, as '{said}' in the file says" if stated else ""
+                unread = self.table.unread_rate
                 remedy = remedy or "write sampling_rate: {value: 50, unit: kHz}"
+                remedy += f", for what '{unread}' in the file means, which is not read" if unread else ""
                 raise InputError(Problem(f"{self.plan.key}.channels", rule, None, remedy, self.source))
             return None
         start, rows = clock[0] if clock else self.begins, self.rows

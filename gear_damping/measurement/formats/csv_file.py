@@ -28,7 +28,7 @@ from gear_damping.measurement.formats.console_text import refuse_what_is_shown
 from gear_damping.measurement.formats.header import Header
 from gear_damping.measurement.formats.number_texts import is_number, is_written, parts_thousands
 from gear_damping.measurement.formats.octave_text import octave_table
-from gear_damping.measurement.formats.stated_rate import stated_rate
+from gear_damping.measurement.formats.stated_rate import stated_rate, unread_rate
 from gear_damping.measurement.formats.table import Table, is_real
 from gear_damping.measurement.formats.text_header import of_oscilloscope, text_header, without_other_headers
 from gear_damping.measurement.formats.text_lines import BEGINS, HEAD, IS_COMMENT, Text, bytes_of
@@ -79,7 +79,9 @@ def read(path: Path, max_bytes: int) -> Table:
     # Decimal commas may always stand in quotes.
     table = CellTable(path, columns, decimal_commas=True, decimal=decimal if decimal == "," or has_points else "")
     above = [row for line, row in islice(text.rows(), HEAD) if line < first_line]
-    table.stated_rate = stated_rate(above if scope is None else [*above, *scope[2]])
+    above += [] if scope is None else scope[2]
+    table.stated_rate = stated_rate(above, decimal=decimal)
+    table.unread_rate = "" if table.stated_rate else unread_rate(above, decimal)
     if header.skipped:
         table.notes += (f"{path.name}: {header.skipped} line(s) before the header are left out",)
     if header.says:

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_damping.units import is_of_kind, to_si
+from gear_damping.measurement.formats.rate_units import Size, number_said, samples_a_time, size_said
 
 _END = r"(?:\b|(?=_(?:ns|us|ms|s|hz|khz|mhz)\b))"  # of a name, before its unit too: `dt_us`
 _STEP = re.compile(
-    r"\b(delta[ _]?[tx]|d[tx]|t ?interval|[tx][ _]?incr(ement)?|x-axis delta|"
+    r"\b(delta[ _]?[tx]|d[tx]|t ?interval|[tx][ _]?inc(r(ement)?)?|x-axis delta|"
     r"(samp(le|ling)|time|horizontal|record|abtast)[ _-]?(interval\w*|period\w*|increment\w*|step\w*))" + _END, re.I,
 )  # fmt: skip
 _RATE = re.compile(
@@ -25,28 +25,43 @@ _ALONE = re.compile(r"(?:^|(?<=[./]))rate(?:_k?hz)?\s*$", re.I)  # of a single n
 _STEP_ALONE = re.compile(
     r"(?:^|(?<=[./]))(Ts|x_values\.increment)\s*$"
 )  # of MATLAB, and of its files made by Simcenter
-_IN_NAME = re.compile(r"_(ns|us|ms|s|hz|khz|mhz)[\s:=]*$", re.I)  # `sample_interval_us`
+_BARE = re.compile(r"^\s*rate(?=\W*$|\s*[(\[]|\s+in\s)", re.I)  # of the lines above a table: any rate
+_CLOCK = re.compile(r"^\s*clock\b", re.I)  # Hantek: `#CLOCK:500us`
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.I)
+_WITH_SIGNS = re.compile(r"[-+]?(\d+([.,]\d+)*[.,]?|[.,]\d+)(e[-+]?\d+)?", re.I)  # of decimals, or between thousands
 _OF_A_NAME = re.compile(r"[^\W\d]")  # before a number that is a part of it, as in `CH1` and `Signal_0`
-_DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")  # within a cell: one that parts cells is in none
 _FRAMES = ["Frame", "Sub Frame"]  # the names of the first columns in tables of Vicon
 _LONGEST_NAME = 40  # characters, assumed: what is longer is a sentence
+_LONGEST_LINE = 60  # characters of a line that are told
 
 
-def stated_rate(rows: Iterable[Sequence[str]], beside_arrays: bool = False) -> tuple[str, float] | None:
-    """The words that state a rate and the rate in Hz; None where none does, or two of them disagree.
+def stated_rate(
+    rows: Iterable[Sequence[str]], beside_arrays: bool = False, decimal: str = "."
+) -> tuple[str, float] | None:
+    """The words that state a rate and the rate in Hz; None where none does, two disagree, or its unit is not read.
 
     Args:
         rows: The cells of the lines above a table of texts, comments among them, or attributes: a name and its value.
         beside_arrays: Whether they are numbers beside arrays, of which one that is called `rate` is that of these.
+        decimal: The decimal sign of the file.
     """
     rows = [*rows]
     if (frames := _of_frames(rows)) is not None:
         return frames
-    rows += [pair for above, below in pairwise(rows) for pair in _over_their_values(above, below)]
-    found = [one for row in rows if (one := _of_row(row, beside_arrays)) is not None]
+    found = [(words, rate) for words, rate, _ in _stated(rows, beside_arrays, decimal) if rate is not None]
     rates = {f"{rate:.5g}" for _, rate in found}
     return found[0] if len(rates) == 1 else None
+
+
+def unread_rate(rows: Iterable[Sequence[str]], decimal: str = ".") -> str:
+    """The first line that states a rate whose number or unit is not read, as `stated_rate` has its arguments; or ""."""
+    return next((line for _, rate, line in _stated([*rows], False, decimal) if rate is None), "")
+
+
+def _stated(rows: Sequence[Sequence[str]], beside_arrays: bool, decimal: str) -> list[tuple[str, float | None, str]]:
+    """Of every line that states a rate its words, the rate in Hz, None where it is not read, and the line."""
+    rows = [*rows, *(pair for above, below in pairwise(rows) for pair in _over_their_values(above, below))]
+    return [one for row in rows if (one := _of_row(row, beside_arrays, decimal)) is not None]
 
 
 def _of_frames(rows: Sequence[Sequence[str]]) -> tuple[str, float] | None:
@@ -66,27 +81,52 @@ def _over_their_values(above: Sequence[str], below: Sequence[str]) -> list[tuple
     return list(zip(names, values, strict=True)) if are_values and not any(map(_NUMBER.fullmatch, names)) else []
 
 
-def _of_row(row: Sequence[str], beside_arrays: bool) -> tuple[str, float] | None:
-    cells = (_DECIMAL_COMMA.sub(".", cell.strip().strip('"')) for cell in row if cell.strip())
-    text = " ".join(cells).lstrip("#%/;*! ")
-    number = next((one for one in _NUMBER.finditer(text) if not _OF_A_NAME.match(text[: one.start()][-1:])), None)
+def _of_row(row: Sequence[str], beside_arrays: bool, decimal: str) -> tuple[str, float | None, str] | None:
+    """The words of a line that state a rate, the rate in Hz, None where it is not read, and the line; or None."""
+    line = " ".join(cell.strip().strip('"') for cell in row if cell.strip()).lstrip("#%/;*! ")
+    number = next((one for one in _WITH_SIGNS.finditer(line) if not _OF_A_NAME.match(line[: one.start()][-1:])), None)
     if number is None:
         return None
-    name, behind = text[: number.start()], text[number.end() :].split()
-    is_step = _STEP.search(name) or (_STEP_ALONE.search(name) if beside_arrays else None)
-    words = is_step or _RATE.search(name) or (_ALONE.search(name) if beside_arrays else None)
-    if len(name) > _LONGEST_NAME or words is None:
+    name, behind = line[: number.start()], line[number.end() :]
+    if not name.strip() and (samples := samples_a_time(behind)):
+        return _measured(behind.strip(), number[0], samples, decimal, line)
+    words, is_step = _words(name, beside_arrays)
+    if words is None or len(name) > _LONGEST_NAME:
         return None
-    value = float(number[0])
-    if any(_NUMBER.fullmatch(other) and float(other) != value for other in behind):
+    others = [number_said(one) for one in behind.split() if _WITH_SIGNS.fullmatch(one)]
+    if any(other != number_said(number[0]) for other in others):
         return None  # of each channel its own
-    in_name = (one.lower().replace("hz", "Hz").replace("mHz", "MHz") for one in _IN_NAME.findall(name))
-    said = (*re.findall(r"[(\[]([^)\]]+)[)\]]", name), *behind[:1], *in_name)
-    unit = next((one for one in said if one), "")
-    is_step = is_step and not is_of_kind(unit, "Hz")  # steps at 8 kHz
-    size = value * _factor(unit, "s" if is_step else "Hz")
-    rate = rate_of(size) if is_step else size
-    return (words[0].strip(), rate) if rate is not None and 0 < rate < inf else None
+    behind = " ".join(one for one in behind.split() if not _WITH_SIGNS.fullmatch(one))
+    ends = "_" + words[0].rpartition("_")[2] if "_" in words[0] else ""  # `rate_khz` is a name of two words
+    size = size_said(name, ends + name[words.end() :], behind, is_step)
+    if words.re is _CLOCK and not (size and size.kind == "s" and size.factor < 1):
+        return None  # a time of day, or the clock of a processor
+    if words.re is _BARE and size is None:
+        return None  # a rate of something else
+    if words.re is _BARE and not behind.strip() and not name[words.end() :].strip(" \t:="):
+        size = None  # any rate: a unit alone tells that it is one of samples
+    return _measured(words[0].strip(), number[0], size, decimal, line)
+
+
+def _words(name: str, beside_arrays: bool) -> tuple[re.Match[str] | None, bool]:
+    """The words of a name that state a rate, or the time from one sample to the next, and whether it is the latter."""
+    steps, rates = (_STEP, _CLOCK, _STEP_ALONE), (_RATE, _ALONE)
+    if not beside_arrays:
+        steps, rates = steps[:2], (_RATE, _BARE)
+    step = next((found for one in steps if (found := one.search(name))), None)
+    return step or next((found for one in rates if (found := one.search(name))), None), step is not None
+
+
+def _measured(
+    words: str, number: str, size: Size | None, decimal: str, line: str
+) -> tuple[str, float | None, str] | None:
+    """The words, the rate in Hz of a number in a unit, and the line; None of what is no rate."""
+    value = number_said(number, decimal)
+    if size is None or value is None:
+        return words, None, line[:_LONGEST_LINE]
+    value *= size.factor
+    rate = rate_of(value) if size.kind == "s" else value
+    return (words, rate, line) if rate is not None and 0 < rate < inf else None
 
 
 def rate_of(step: Any) -> float | None:
@@ -114,8 +154,3 @@ def rate_beside(arrays: Mapping[str, NDArray]) -> tuple[str, float] | None:
     """The rate that single numbers beside arrays state (`Fs`, `dt`, `rate`), as `stated_rate` has it."""
     single = {name: one.item() for name, one in arrays.items() if one.size == 1 and one.dtype.kind in "fiu"}
     return stated_rate(beside_their_units(single), beside_arrays=True)
-
-
-def _factor(unit: str, plain: str) -> float:
-    """The size of a unit, of the plain one where it is none of its kind: something else stands there."""
-    return to_si(1.0, unit, plain) if is_of_kind(unit, plain) else 1.0

@@ -48,6 +48,7 @@ class Table(ABC):
         self._place = [(column[1], column[2]) for column in columns]
         self.sampling_rate: float | None = None  # Hz, where the format itself holds one for the whole file
         self.stated_rate: tuple[str, float] | None = None  # its name in lines above, or attributes; Hz; a guess
+        self.unread_rate = ""  # the line above that states one whose number or unit is not read
         self.stated_rates: dict[str, tuple[str, float]] = {}  # the same of groups, by their path
         self.full_scale: float | None = None  # the value of full scale, where samples are fractions of it
         self.not_applied: dict[str, dict[str, float]] = {}  # factors and zeros beside arrays, by the name of these
