@@ -2,8 +2,9 @@
 
 from contextlib import suppress
 
-from gear_damping.errors import InputError
+from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.declaration import ChannelPlan, RecordPlan
+from gear_damping.measurement.formats.blocks import listed, overlapping
 from gear_damping.measurement.formats.moments import DAY
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.record import Finding
@@ -86,10 +87,32 @@ class FileClocks:
         if found:
             index, own = found[0]
             return (_rate_conflict(rate, f"the stamps of column '{self.table.names[index]}' run at", own),)
-        name, stated = self.table.stated_rate or ("", rate)
+        name, stated = self.stated(first, stop) or ("", rate)
         if abs(rate / stated - 1) <= RATE_TOLERANCE:
             return ()
         return (_rate_conflict(rate, f"'{name}' beside the table says", stated),)
+
+    def stated(self, first: int, stop: int) -> tuple[str, float] | None:
+        """The words that state a rate beside the table, of the block that the rows lie in, and the rate in Hz."""
+        if not self.table.blocks:
+            return self.table.stated_rate
+        block = next(iter(overlapping(self.table.blocks, first, stop)), None)
+        if block is None or block.rate is None:
+            return None
+        return (f"{block.said} above row {block.first}" if block.first else block.said), block.rate
+
+    def refuse_mixed(self, first: int, stop: int, key: str, source: str) -> None:
+        """Refuse rows without stamps that blocks of other rates share.
+
+        Raises:
+            InputError: they do, with the slice of each block.
+        """
+        blocks = overlapping(self.table.blocks, first, stop)
+        if len({one.rate for one in blocks}) < 2:  # several blocks of one rate are one
+            return
+        rule = f"rows {first} to {stop - 1} lie in {len(blocks)} blocks, of which the file states other rates"
+        remedy = f"make each of them a record of its rate, with slice: {listed(blocks)}"
+        raise InputError(Problem(key, rule, None, remedy, source))
 
     def lost_numbers(self, first: int, stop: int) -> tuple[Finding, ...]:
         """A finding where a column that counts the samples, and that no channel uses, leaves numbers out."""

@@ -23,6 +23,7 @@ from gear_damping.measurement.column_kinds import (
     kind_of,
     turn_of,
 )
+from gear_damping.measurement.formats.blocks import listed, overlapping
 from gear_damping.measurement.formats.table import ArrayTable, Table
 from gear_damping.measurement.irregular_stamps import HALF
 from gear_damping.measurement.recordings import past_overflow, recordings
@@ -163,10 +164,11 @@ def inspect_table(table: Table, clock: str | int | None = None) -> Inspection:
     columns, some = _where_filled(columns) if stamps else (columns, "")
     length = _length(columns, stamps)
     rows, taken = _of_one_recording(columns, stamps, length, _rows([c for c in columns if c.values.size == length]))
+    rows, taken = _of_one_block(table, rows) if stamps is None and table.blocks else (rows, taken)
     base, faults = _base(table, columns, stamps, length, rows)
     faults += seen_by_turns(table, [column.values for column in columns], stamps.index if stamps else None)
     named, rate = (
-        (may_be_rate or _stated_rate(table, columns, length)) if base is None and stamps is None else ("", None)
+        (may_be_rate or _stated_rate(table, columns, length, rows)) if base is None and stamps is None else ("", None)
     )
     base = steady_time(rate, rows[0], rows[1] - rows[0]) if rate else base
     found = [_seen(c, stamps, columns, base, length, table.clock(k)) for k, c in enumerate(columns)]
@@ -243,6 +245,8 @@ def of_columns(found: Inspection, used: Collection[Column]) -> Inspection:
     rows = _rows(kept) if used else found.rows
     if rows == found.rows or rows[1] - rows[0] < found.rows[1] - found.rows[0]:
         return found
+    if found.time is None and found.table.blocks:
+        rows = _of_one_block(found.table, rows)[0]
     if found.rate_of:
         return replace(found, rows=rows, base=steady_time(found.rate, rows[0], rows[1] - rows[0]))
     rows, taken = _of_one_recording(found.columns, found.time, found.length, rows)
@@ -269,8 +273,12 @@ def clock_of(found: Inspection, column: Column) -> Column | None:
     return nearest if apart.mean() > _OTHER_PACE * np.abs(own).mean() else None
 
 
-def _stated_rate(table: Table, columns: Sequence[Column], length: int) -> tuple[str, float | None]:
-    """What the file calls the rate, and the rate in Hz: that of all of it, or of the groups of the record's columns."""
+def _stated_rate(
+    table: Table, columns: Sequence[Column], length: int, rows: tuple[int, int]
+) -> tuple[str, float | None]:
+    """What the file calls the rate, and the rate in Hz: that of all of it, of a block, or of the columns' groups."""
+    if table.blocks:
+        return next((one.said, one.rate) for one in overlapping(table.blocks, *rows))
     own = (str(c.reference) for c in columns if c.kind != ELSEWHERE and c.values.size == length)
     groups = dict.fromkeys(name.rpartition("/")[0] for name in own)
     found = [(group, *table.stated_rates.get(group, ("", None))) for group in groups]
@@ -355,6 +363,13 @@ def _of_one_recording(
     listed = ", ".join(str(list(part)) for part in parts[:MOST_LISTED]) + (" …" if len(parts) > MOST_LISTED else "")
     said = f"the longest of {len(parts)} recordings one after another, each with its own clock: rows {listed}"
     return max(parts, key=lambda part: part[1] - part[0]), said
+
+
+def _of_one_block(table: Table, rows: tuple[int, int]) -> tuple[tuple[int, int], str]:
+    """Of some rows those of the longest block of a rate of its own, and where the others are."""
+    parts = [(max(one.first, rows[0]), min(one.stop, rows[1])) for one in overlapping(table.blocks, *rows)]
+    longest = max(parts, key=lambda part: part[1] - part[0], default=rows)
+    return longest, f"the longest of {len(table.blocks)} blocks, of other rates: rows {listed(table.blocks)}"
 
 
 def _base(

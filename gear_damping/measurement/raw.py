@@ -222,6 +222,7 @@ class RawReader:
         """The time base of the declared rate, else of the file's; None where the missing rate is said already."""
         rate = self.plan.timing.sampling_rate
         clock = self.clocks.shared(rate)
+        self.clocks.refuse_mixed(self.rows.first, self.rows.stop, f"{self.plan.key}.channels", self.source)
         if rate is None and clock is None:
             if not any(problem.key.startswith(self.plan.key) for problem in self.problems):
                 rule = "neither time nor sampling_rate is given"
@@ -242,8 +243,8 @@ class RawReader:
 
     def _stated_rate(self) -> tuple[str, float]:
         """The words that state one rate beside the values of a file, and the rate in Hz; 0 where none does."""
-        if self.table.stated_rate:
-            return self.table.stated_rate
+        if own := self.clocks.stated(self.rows.first, self.rows.stop):
+            return own
         rates = {rate: said for said, rate in self.table.stated_rates.values()}
         return next(((said, rate) for rate, said in rates.items()), ("", 0.0)) if len(rates) == 1 else ("", 0.0)
 

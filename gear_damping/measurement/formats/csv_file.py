@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.formats.blocks import blocks_of, listed
 from gear_damping.measurement.formats.cells import (
     FEWEST_BEHIND,
     MOST_BELOW,
@@ -87,7 +88,10 @@ def read(path: Path, max_bytes: int) -> Table:
     if header.says:
         table.notes += (f"{path.name}: {header.says}",)
     if blocks:
-        table.notes += (f"{path.name}: {blocks} more block(s) with a header of their own follow the first",)
+        lines_of = [line for line, _ in _values(text, first_line)]
+        table.blocks = blocks_of(lines_of, blocks, table.stated_rate, decimal)
+        rates = f", of other rates: rows {listed(table.blocks)}" if table.blocks else ""
+        table.notes += (f"{path.name}: {len(blocks)} more block(s) with a header of their own follow the first{rates}",)
     elif not below and (empty := _empty_rows(text, first_line)):
         table.notes += (f"{path.name}: {empty}",)
     if text.cut:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.measurement.formats.blocks import Block
 
 CLOCK = 2  # numbers of a clock: the first time and the rate
 _SHOWN = 20  # arrays that a message lists
@@ -49,6 +50,7 @@ class Table(ABC):
         self.sampling_rate: float | None = None  # Hz, where the format itself holds one for the whole file
         self.stated_rate: tuple[str, float] | None = None  # its name in lines above, or attributes; Hz; a guess
         self.unread_rate = ""  # the line above that states one whose number or unit is not read
+        self.blocks: tuple[Block, ...] = ()  # rows below headers of their own, where these state other rates
         self.stated_rates: dict[str, tuple[str, float]] = {}  # the same of groups, by their path
         self.full_scale: float | None = None  # the value of full scale, where samples are fractions of it
         self.not_applied: dict[str, dict[str, float]] = {}  # factors and zeros beside arrays, by the name of these

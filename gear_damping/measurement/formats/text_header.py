@@ -117,8 +117,8 @@ def _sets_down(header: Header) -> bool:
     return any(map(_LABELLED.search, header.names)) and header.unit(0) is None
 
 
-def without_other_headers(text: Text, first_line: int) -> int:
-    """Make comments of the headers of further blocks, and return how many there are.
+def without_other_headers(text: Text, first_line: int) -> list[tuple[int, list[list[str]]]]:
+    """Make comments of the headers of further blocks, and return the last line and the cells of each.
 
     The last line above the values comes again in each; what stands before it up to the numbers or a blank line is its
     header too.
@@ -126,16 +126,20 @@ def without_other_headers(text: Text, first_line: int) -> int:
     above = text.utf8.split(b"\n", first_line)[: first_line - 1]
     named = next((line.strip() for line in reversed(above) if line.strip()), b"")
     if not named or _VALUES.match(named) or text.utf8.count(named) == 1:  # as in nearly every file
-        return 0
+        return []
     lines = text.utf8.split(b"\n")
     again = [k for k in range(first_line, len(lines)) if lines[k].strip() == named]
+    headers = []
     for last in again:
+        rows: list[list[str]] = []
         for k in range(last, first_line, -1):
             if not lines[k].strip() or _VALUES.match(lines[k]):
                 break
+            rows.insert(0, lines[k].decode("utf-8", "replace").split(text.delimiter))
             lines[k] = b"#" + lines[k]
+        headers.append((last + 1, rows))
     text.utf8 = b"\n".join(lines)
-    return len(again)
+    return headers
 
 
 def _behind_marks(rows: list[list[str]]) -> int:
