@@ -1,12 +1,9 @@
 """Values that were given in the experiment or on the command line, and that another value of the group overrules."""
 
 from gear_damping.config.acting import Found
-from gear_damping.config.source import ORDER, Origin
+from gear_damping.config.decided import decided_by_options
+from gear_damping.config.source import ORDER, Origin, spellings
 from gear_damping.config.whole import Whole
-from gear_damping.units import SUFFIXES
-
-PRINTED = ("equivalent_mass", "inertia_pinion", "inertia_gear", "module", "pressure_angle")  # as_printed has its own
-ON_TEETH = "tooth_friction"  # the effect that takes lever arms from inertias, module and pressure angle
 
 
 def given_on_top(name: str, origin: Origin, group: str = "simulator", after: str = "family") -> str | None:
@@ -18,33 +15,17 @@ def given_on_top(name: str, origin: Origin, group: str = "simulator", after: str
         group: The group that it belongs to.
         after: The member of ORDER that does not count as given, nor what comes before.
     """
-    keys = [f"{group}.{name}", *(f"{group}.{name}_{suffix}" for suffix in SUFFIXES)]
+    keys = spellings(f"{group}.{name}")
     return next((key for key in keys if origin.rank(key) > ORDER.index(after)), None)
 
 
-def overruled_torque(whole: Whole) -> Found:
-    """The torque on the gear follows from that on the pinion unless it is held."""
-    key, chosen = given_on_top("gear_torque", whole.origin), whole.simulator.model.system.chosen
-    if key and chosen.get("gear_torque_mode") == "balanced":
-        rule = "has no effect where simulator.gear_torque_mode is balanced: it follows from the pinion's torque"
-        remedy = "leave it out, or add simulator.gear_torque_mode=held"
-        yield key, rule, whole.simulator.given["gear_torque"], remedy
-
-
-def overruled_by_print(whole: Whole) -> Found:
-    """The mass and the base circles that the paper prints take the place of what they follow from."""
+def overruled_value(whole: Whole) -> Found:
+    """Values of the system that one of its options decides."""
     simulator = whole.simulator
-    chosen = simulator.model.system.chosen
-    if not chosen.get("as_printed"):
-        return
-    is_read = chosen["gear_torque_mode"] == "held" or any(one.name == ON_TEETH for one in simulator.model.effects)
-    for name in PRINTED[:1] if is_read else PRINTED:
+    for name, decided in decided_by_options(simulator.model, "simulator.").items():
         key = given_on_top(name, whole.origin)
         if key:
-            rule = (
-                "has no effect beside simulator.as_printed=true: mass and base circles are those that the paper prints"
-            )
-            yield key, rule, simulator.given[name], "leave one of them out"
+            yield key, decided.rule, simulator.given[name], decided.remedy
 
 
 def overruled_accuracy(whole: Whole) -> Found:
@@ -73,8 +54,7 @@ def overruled_run(whole: Whole) -> Found:
 
 
 OVERRULED = (
-    (("simulator",), overruled_torque),
-    (("simulator",), overruled_by_print),
+    (("simulator",), overruled_value),
     (("simulator",), overruled_accuracy),
     (("simulator", "family"), overruled_perturbation),
     (("protocol",), overruled_run),

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, get_args
 
+from gear_damping.config.decided import decided_in_one_file
 from gear_damping.config.extended import with_extended
 from gear_damping.config.keys import without_group
 from gear_damping.config.prior import OTHER_FAMILY, read_prior
@@ -123,6 +124,8 @@ def read_simulator(node: Mapping[str, Any], family: Mapping[str, Any], origin: O
     if plugins is None:  # model, family and damping law may need the effects of a file that cannot be used
         raise InputError(reader.problems)
     model = _model(reader, system, effects, given)
+    for key, decided in ({} if model is None else decided_in_one_file(model, reader.origin)).items():
+        reader.refuse(key, decided.rule, node.get(key.partition(".")[2]), decided.remedy)
     own = {effect.name: _in_units_of(system, effect.parameters) for effect in effects}
     flat = declared | {f"{name}.{p.name}": p for name, listed in own.items() for p in listed}
     drawn = read_prior(reader, family, flat, given)

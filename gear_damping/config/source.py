@@ -10,6 +10,7 @@ import yaml
 
 from gear_damping.config.command_line import parse
 from gear_damping.config.locate import conf_folder, groups
+from gear_damping.units import SUFFIXES
 
 EXTENDED, EXPERIMENT, COMMAND_LINE = "extended", "experiment", "command line"
 # Later ones beat earlier ones, as in the defaults list of config.yaml.
@@ -65,6 +66,10 @@ class Origin:
         place = self.place(key)
         return -1 if place is None else ORDER.index(place)
 
+    def is_of_the_file(self, key: str) -> bool:
+        """Whether the file of an extended simulator gives the key, and nothing after it does."""
+        return self.place(key) == EXTENDED
+
     def typed(self) -> Iterator[tuple[str, str]]:
         """Key and value of what was typed."""
         for override in self.overrides:
@@ -85,6 +90,11 @@ class Origin:
         chosen = dict(self.choices).get(place)
         name = "config.yaml" if place == "config" else f"{place}/{chosen}.yaml"
         return _content(conf_folder() / name, place) if place == "config" or chosen else {}
+
+
+def spellings(key: str) -> list[str]:
+    """A key of a parameter, and with each unit that it may end in."""
+    return [key, *(f"{key}_{suffix}" for suffix in SUFFIXES)]
 
 
 @cache

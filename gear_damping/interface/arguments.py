@@ -16,6 +16,7 @@ from gear_damping.at_home import at_home
 from gear_damping.errors import InputError, Problem, with_article
 from gear_damping.explanation.explain import Listener
 from gear_damping.measurement.record import Measurement
+from gear_damping.physics.model import Model
 from gear_damping.schema.values import Flag, Given, Number, OneOf, Problems
 from gear_damping.simulation.solver_settings import Engine, Solver
 
@@ -62,6 +63,17 @@ def require_kind(name: str, value: object, kind: type, example: str) -> None:
         raise InputError(
             Problem(name, f"must be {with_article(kind.__name__)}", repr(value), f"for example {name}={example}")
         )
+
+
+def refuse_no_model(model: object, kind: type[Model] = Model) -> None:
+    """Refuse what is no model, as a bare system or a list of models.
+
+    Raises:
+        InputError: it is none.
+    """
+    if not isinstance(model, kind):
+        remedy = "give a gd.Model, for example gd.Model(gd.Oscillator(), [gd.ViscousDamping()])"
+        raise InputError(Problem("model", "is no model: a system with its effects", repr(model), remedy))
 
 
 def refuse_other_solver(solver: object) -> None:

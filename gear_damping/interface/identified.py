@@ -10,7 +10,13 @@ from matplotlib.figure import Figure
 from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.explain import NOBODY, Listener
 from gear_damping.interface import identified_gears, identified_oscillator
-from gear_damping.interface.arguments import names, refuse_other, refuse_other_call, refuse_other_solver
+from gear_damping.interface.arguments import (
+    names,
+    refuse_no_model,
+    refuse_other,
+    refuse_other_call,
+    refuse_other_solver,
+)
 from gear_damping.interface.model import Model
 from gear_damping.interface.rig_unit import in_the_unit_of
 from gear_damping.measurement.record import Measurement
@@ -117,10 +123,8 @@ def identify(
     free = names("free", free)
     if model is None and free:
         raise InputError(Problem("free", "names parameters of a model", list(free), "give the model too"))
-    if model is not None and not isinstance(model, Model):
-        remedy = "give a gd.Model, for example gd.Model(gd.Oscillator(), [gd.ViscousDamping()])"
-        raise InputError(Problem("model", "is no model: a system with its effects", repr(model), remedy))
     if model is not None:
+        refuse_no_model(model, Model)
         return Identification(measurement, identified_gears.own_fit(measurement, model, free, log, solver))
     if measurement.base.has(Trait.REST):
         return Identification(measurement, identified_oscillator.linear_fit(measurement, progress, solver))

@@ -17,7 +17,7 @@ from gear_damping.identification.observation import fit_record, has_spring, know
 from gear_damping.identification.oscillator.each_alone import each_alone, said_of_each
 from gear_damping.identification.oscillator.estimates import Estimate
 from gear_damping.identification.oscillator.fit import OscillatorFit, fit_oscillator
-from gear_damping.identification.oscillator.linear_model import DAMPING
+from gear_damping.identification.oscillator.linear_model import DAMPING, LAWS
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import WHOLE, Segments
 from gear_damping.interface.base_reading import base_reading
@@ -114,13 +114,17 @@ def content_of(measurement: Measurement, fitted: Fitted) -> dict[str, Any]:
         "undamped": undamped,
         "not_yet_free": not_yet_free,
         "contradicted": (base_reading(measurement) if is_lacking or undamped else None)
-        or contradicted(
-            found.problem.free, found.fitted.shared.tolist(), {name: name.split(".")[-1] for name in found.given}
-        )
+        or contradicted(found.problem.free, found.fitted.shared.tolist(), _words_of_the_file(found, measurement))
         or _far_off(found, measurement)
         or noise_above(fitted.noise, found.rmse["fit"], channel),
     }
     return content | said | {"lack_of_fit": lacking and lacking | {"source": str(measurement.source)}}
+
+
+def _words_of_the_file(found: OscillatorFit, measurement: Measurement) -> dict[str, str]:
+    """The key of the file that states each parameter, by flat name: a damping may stand there as a ratio."""
+    said = {flat: name for name, flat in LAWS.items() if name in measurement.parameters}
+    return {name: said.get(name, name.split(".")[-1]) for name in found.given}
 
 
 def _apart(fitted: Fitted, measurement: Measurement) -> str | None:

@@ -1,12 +1,13 @@
 """A model with its values, and the configuration that says the same."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 import yaml
 
+from gear_damping.config.decided import decided_by_options
 from gear_damping.config.simulator import SimulatorSettings, read_simulator
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
@@ -43,9 +44,11 @@ class Model(physics.Model):
 
         Raises:
             InputError: an effect does not go with the system, is there twice, lacks another one that it needs or a
-                value without a default, or there is not exactly one mesh stiffness in a gear pair.
+                value without a default, a value has no effect beside an option of the system, or there is not exactly
+                one mesh stiffness in a gear pair.
         """
         super().__init__(system, effects)
+        refuse_decided(self, self.given)
         self.prepare(self.values(1))  # lists of unequal length and missing values show here
 
     @classmethod
@@ -65,7 +68,7 @@ class Model(physics.Model):
         if content.get("extended") is not None:
             rule, remedy = "names another file, which is not read here", "give from_config its path alone"
             raise InputError(Problem("simulator.extended", rule, content["extended"], remedy, source))
-        settings = read_simulator({**HOW, **content}, FIXED, _Given(source))
+        settings = read_simulator({**HOW, **content}, FIXED, _Given(source, content))
         refuse_both(settings, source)
         return cls.of_settings(settings)
 
@@ -88,7 +91,7 @@ class Model(physics.Model):
             values: By flat name.
             options: Of the system, in the place of the model's.
         """
-        known = model.parameters()
+        known = model.parameters().keys() - decided_by_options(model)  # of which a model holds none
         given = {name: value for name, value in values.items() if name in known}
         system = type(model.system)(
             **{**model.system.chosen, **options}, **{k: v for k, v in given.items() if "." not in k}
@@ -136,16 +139,40 @@ class Model(physics.Model):
         return "\n".join(lines)
 
 
+def refuse_decided(model: physics.Model, given: Mapping[str, Any], series: Collection[str] = ()) -> None:
+    """Refuse values and series without effect.
+
+    Args:
+        model: The model.
+        given: Values by flat name.
+        series: Names of series that drive it.
+
+    Raises:
+        InputError: an option of the system decides one of them.
+    """
+    decided = decided_by_options(model)
+    problems = [Problem(name, one.rule, given[name], one.remedy) for name, one in decided.items() if name in given]
+    problems += [
+        Problem(f"inputs.{name}", one.rule, None, one.remedy) for name, one in decided.items() if name in series
+    ]
+    if problems:
+        raise InputError(problems)
+
+
 class _Given(Origin):
     """Where values come from that were handed over in Python."""
 
-    def __init__(self, source: str) -> None:
+    def __init__(self, source: str, content: Mapping[str, Any]) -> None:
         super().__init__()
-        object.__setattr__(self, "source", source)
+        vars(self).update(source=source, content=content)
 
     def of(self, key: str) -> str:
         """The mapping, or the file."""
         return self.source
+
+    def is_of_the_file(self, key: str) -> bool:
+        """Whether it gives the key, as the file of an extended simulator does."""
+        return key.partition(".")[2] in self.content
 
 
 def _read(path: Path) -> Mapping[str, Any]:

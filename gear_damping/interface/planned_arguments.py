@@ -9,7 +9,7 @@ from typing import Any
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.test_plan.asked import PlanCosts, PlanGoal, PlannedSensor, PlannedTests, Unknown
 from gear_damping.identification.test_plan.channels import channels_of
-from gear_damping.interface.arguments import refuse_no_flag, refuse_other_kind, require_kind
+from gear_damping.interface.arguments import refuse_no_flag, refuse_no_model, refuse_other_kind, require_kind
 from gear_damping.physics.model import Model
 from gear_damping.schema.values import Problems
 from gear_damping.simulation.sampling import SAMPLING_RATE
@@ -24,8 +24,12 @@ class Handed:
     """Reads what was handed over for one model, and gathers what is wrong with it."""
 
     def __init__(self, model: Model) -> None:
-        """Begin with the model whose units they are in."""
-        refuse_other_kind("model", model, Model, "gd.Model(gd.Oscillator(), [gd.ViscousDamping()])")
+        """Begin with the model whose units they are in.
+
+        Raises:
+            InputError: it is none.
+        """
+        refuse_no_model(model)
         self.system, self.declared, self.problems = model.system, model.parameters(), Problems()
 
     def tests(self, given: object) -> PlannedTests:

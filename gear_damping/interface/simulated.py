@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from gear_damping.errors import InputError, Problem, with_article
-from gear_damping.interface.arguments import SEED, numbers, of_every_run, refuse_other_solver
+from gear_damping.interface.arguments import SEED, numbers, of_every_run, refuse_no_model, refuse_other_solver
+from gear_damping.interface.driven_by import ANGLE, driven_by, refuse_idle
 from gear_damping.physics.model import Model
 from gear_damping.reporting import figures
 from gear_damping.schema.values import Number, Problems
@@ -201,19 +202,21 @@ def simulate(
         n_samples: Output samples of a run.
         batch: Runs.
         inputs: Measured series that drive it, (time,) or (batch, time), SI: `force`, `base_acceleration`;
-            `pinion_torque`, `gear_torque`, `pinion_angle`. `gd.Driven` says which of them hold, and seeds drawn loads.
+            `pinion_torque`, `pinion_angle`, which takes the place of the model's speed, and `gear_torque` where
+            `gear_torque_mode` is `held`. `gd.Driven` says which of them hold, and seeds drawn loads.
         solver: Settings of the solver, and who is told of its progress: `gd.Solver`.
         parameters: In the place of the model's, by name in SI, or in the `unit` of an oscillator: numbers, or (batch,);
             of an effect `**{"backlash.gap": 8e-5}`.
 
     Raises:
-        InputError: a name is unknown, or a value out of range.
+        InputError: a name is unknown, a value out of range, or one has no effect beside an option or a series.
     """
+    refuse_no_model(model)
     Problems(whole_number_problems("batch", batch, BATCH)).raise_any()
     refuse_other_solver(solver)
+    driven = driven_by(inputs)
+    refuse_idle(model, parameters, driven.series)
     given = _within_bounds(model, parameters, int(batch))
-    driven = _driven(inputs)
-    driven = replace(driven, series={name: _rows(name, value) for name, value in driven.series.items()})
     runs = integrate(
         model,
         model.values(batch, **given),
@@ -257,23 +260,6 @@ def _rests(runs: Runs) -> bool:
     return not bool(runs.response.any())
 
 
-def _driven(inputs: Any) -> Driven:
-    """What drives the runs.
-
-    Raises:
-        InputError: series without their names.
-    """
-    if isinstance(inputs, Driven):
-        return inputs
-    if inputs is None or isinstance(inputs, Mapping):
-        return Driven(inputs or {})
-    rule, remedy = (
-        f"must say which series is which, and is {with_article(type(inputs).__name__)}",
-        "write {'force': ARRAY}",
-    )
-    raise InputError(Problem("inputs", rule, remedy=remedy))
-
-
 def _within_bounds(model: Model, values: Mapping[str, ArrayLike], batch: int) -> dict[str, torch.Tensor]:
     """Values as tensors; the model itself refuses names that it does not know.
 
@@ -299,10 +285,6 @@ def _within_bounds(model: Model, values: Mapping[str, ArrayLike], batch: int) ->
     return found
 
 
-def _rows(name: str, series: ArrayLike) -> torch.Tensor:
-    return torch.atleast_2d(numbers(f"inputs.{name}", series))
-
-
 def run_figure(runs: Runs, response: torch.Tensor, run: int = 0) -> Figure:
     """One run over time, its spectrum and its phase plane.
 
@@ -318,7 +300,15 @@ def run_figure(runs: Runs, response: torch.Tensor, run: int = 0) -> Figure:
     if "pinion_speed" not in runs.values:
         units = {"unit": runs.model.system.unit_of("m"), "velocity_unit": runs.model.system.unit_of("m/s")}
         return figures.simulation_figure(figures.ShownRun(time, signal, velocity, sampling_rate=rate, **units, **words))
-    speed, teeth = (float(runs.values[key][run]) for key in ("pinion_speed", "n_teeth_pinion"))
+    speed, teeth = _mean_speed(runs, run), float(runs.values["n_teeth_pinion"][run])
     shafts = {"shaft_frequency_hz": abs(speed) / (2 * pi) or None, "n_teeth_pinion": teeth}
     shafts["gear_order"] = teeth / float(runs.values["n_teeth_gear"][run])
     return figures.simulation_figure(figures.ShownRun(time, 1e6 * signal, velocity, "µm", rate, **words, **shafts))
+
+
+def _mean_speed(runs: Runs, run: int) -> float:
+    """Of the pinion in one run, rad/s: as a series of its angle has it, or as it is at the start."""
+    angle = runs.inputs.get(ANGLE)
+    if angle is None or angle.shape[1] < 2:
+        return float(runs.values["pinion_speed"][run])
+    return float(angle[run, -1] - angle[run, 0]) * runs.sampling_rate / (angle.shape[1] - 1)

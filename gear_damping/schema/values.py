@@ -181,11 +181,18 @@ class Names(Value):
     def read(self, value: Any, name: str) -> list[Any]:
         """The names."""
         if not _differ(value):
-            refuse("must be a list of different names", value, "write a list of different names")
+            refuse("must be a list of different names", value, f"write {self._example(value)}")
         for one in value if self.choices else ():
             if one not in self.choices:
                 refuse(f"must be one of {', '.join(self.choices)}", value, nearest(str(one), self.choices))
         return value
+
+    def _example(self, value: Any) -> str:
+        """What was meant as a list, or how one is written."""
+        if isinstance(value, str) and value:
+            return f"[{value}], also for one alone"
+        named = list(dict.fromkeys(map(str, value))) if isinstance(value, list) and value else ["first", "second"]
+        return f"[{', '.join(named)}], each name once"
 
 
 @dataclass(frozen=True)

@@ -166,3 +166,36 @@ def test_a_quantity_of_another_kind_is_refused_by_its_key(word, rule):
 )  # fmt: skip
 def test_a_swept_quantity_is_a_number_of_the_table(key, value, found):
     assert number_of(key, value) == (found if found is None or isinstance(found, str) else pytest.approx(found))
+
+
+@pytest.mark.parametrize("level", ["20", "20dB", "20 dB", "{value: 20, unit: dB}"])
+def test_a_level_is_in_db(level):
+    words = [f"simulator.{noise}.snr_db={level}" for noise in ("sensor_noise", "load_noise")]
+    found = settings("task=simulate", *words).simulator.given
+    assert [found[f"{noise}.snr_db"] for noise in ("sensor_noise", "load_noise")] == [20.0, 20.0]
+
+
+@pytest.mark.parametrize(
+    ("level", "said"),
+    [
+        ("abc", r"must be a finite number in dB; remedy: write a number, or \{value: …, unit: dB\}"),
+        ("20 mm", "the unit 'mm' is not one of the kind of 'dB'; remedy: give a level in dB"),
+        ("500 dB", "must lie within -40 … 200 dB; remedy: nearest valid value 200"),
+    ],
+)
+def test_what_is_no_level_is_told_what_is_one(level, said):
+    with pytest.raises(InputError, match=rf"simulator\.load_noise\.snr_db = .*: {said}"):
+        settings("task=simulate", f"simulator.load_noise.snr_db={level}")
+
+
+@pytest.mark.parametrize(
+    ("given", "remedy"),
+    [
+        ("coulomb_friction", r"write \[coulomb_friction\], also for one alone"),
+        ("[backlash,backlash]", r"write \[backlash\], each name once"),
+        ("[]", r"write \[first, second\], each name once"),
+    ],
+)
+def test_a_list_of_names_is_shown_as_it_is_written(given, remedy):
+    with pytest.raises(InputError, match=rf"ruled_out = .*: must be a list of different names; remedy: {remedy}"):
+        settings("task=explain", f"ruled_out={given}")

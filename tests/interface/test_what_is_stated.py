@@ -106,3 +106,17 @@ def test_a_force_that_stays_tells_no_gain(tmp_path):
         value, (low, high) = ratio_of(gd.identify(gd.load(path)))
         assert value == pytest.approx(3.0, rel=0.1)
         assert low < 3.0 < high
+
+
+@pytest.mark.parametrize(
+    ("key", "stated"),
+    [
+        ("damping_ratio", "{value: 15, unit: '1', uncertainty: 0.1}"),
+        ("damping_coefficient", "{value: 60, unit: 1/s, uncertainty: 0.01}"),
+    ],
+)
+def test_a_damping_that_is_contradicted_goes_by_its_own_name(tmp_path, key, stated):
+    record = write(tmp_path, [("a", 0.02, "", SHOWN, 0.0)], f"parameters: {{{key}: {stated}}}\n")
+    said = gd.identify(record).content["contradicted"]
+    assert said.startswith(f"{key} lies ")
+    assert "of its stated uncertainties away: correct its value" in said
