@@ -3,7 +3,7 @@
 from gear_damping.errors import InputError
 from gear_damping.measurement.angular_error import is_angular_acceleration
 from gear_damping.measurement.declared_units import Conversion
-from gear_damping.measurement.formats.bracket_words import unit_of_its_kind
+from gear_damping.measurement.formats.bracket_words import is_level, spelt_out, unit_of_its_kind
 from gear_damping.measurement.formats.header import is_among_words
 from gear_damping.measurement.named_units import gravity_at_end, unit_at_end
 from gear_damping.measurement.raw import SAME_UNIT, RawChannel, RawRecord
@@ -102,11 +102,22 @@ def _may_be_gravity(raw: RawChannel, name: str, said: str, stated: Unit) -> Find
 
 def _among_words(raw: RawChannel, said: str, stated: Unit) -> Finding | None:
     """A word in the brackets of the header is a unit of the kind of the YAML's and another one, `left, mm`."""
-    word = unit_of_its_kind(raw.header_unit, said)
+    if is_level(raw.header_unit):
+        return _level_conflict(raw, said)
+    word = spelt_out(raw.header_unit, said) or unit_of_its_kind(raw.header_unit, said)
     if word is None or parse_unit(word).factor == stated.factor:
         return None
     message = (
         f"the header of column '{raw.plan.column}' says '{raw.header_unit}', where {word} may be the unit, and the "
         f"YAML '{said}', which was used; correct the one that is wrong, or write gain: 1 where it is none"
+    )
+    return Finding("unit_conflict", message, channel=raw.plan.name)
+
+
+def _level_conflict(raw: RawChannel, said: str) -> Finding:
+    """The header says a level, `dBV`, and the YAML the unit of a signal."""
+    message = (
+        f"the header of column '{raw.plan.column}' says '{raw.header_unit}', a level, which is a logarithm, and the "
+        f"YAML '{said}', which was used; write the values themselves, 10^(level/20), or gain: 1 where they are these"
     )
     return Finding("unit_conflict", message, channel=raw.plan.name)

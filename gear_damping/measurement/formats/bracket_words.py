@@ -16,6 +16,12 @@ _WITH_MEASURE = re.compile(rf"^(?P<unit>.*?[^\W_])[_\-]?{_MEASURE}$", re.I)  # `
 _FIRST = re.compile(r"^\s*(?P<word>[^\s,;:|]+)(?P<sign>\s*[,;:|]|\s+[-–—]+(?=\s))?\s*(?P<behind>.*)$")
 _IN = re.compile(r"(?:^|\s)in\s+(\S+)\s*$")  # `in mm`, `Weg in mm`
 _LAST = re.compile(r"[,;:|]\s*(\S+)\s*$|\s[-–—]+\s+(\S+)\s*$")  # `filtered, mm`
+_PREFIXES = {"nano": "n", "micro": "u", "milli": "m", "centi": "c", "kilo": "k", "mega": "M"}
+_PREFIXED = re.compile(rf"^({'|'.join(_PREFIXES)})[- ]?([A-Za-z]\S*)$", re.I)
+_OWN = {  # of a length, or of an angle
+    "mG": ("mg",), **dict.fromkeys(('"', "''", "″"), ("in", "arcsec")), **dict.fromkeys(("'", "′"), ("ft", "arcmin")),
+}  # fmt: skip
+_LEVEL = re.compile(r"dB[A-Za-zµμ]+$")  # over a volt, a milliwatt
 _BETWEEN = re.compile(r"[\s,;:|]+")
 # Units of more than one letter that are words too: of place, of number, of the one that is meant.
 _WORDS = {
@@ -58,6 +64,19 @@ def unit_of_its_kind(text: str, plain: str) -> str | None:
         if counts and not re.search(r"\d", before) and is_of_kind(unit, plain):
             return unit
     return None
+
+
+def spelt_out(text: str, plain: str) -> str | None:
+    """The unit of the kind of another one that a text spells in a way of its own, `milli g`, `mG` or `"`; else None."""
+    text = text.strip()
+    prefixed = _PREFIXED.match(text)
+    said = (_PREFIXES[prefixed[1].lower()] + prefixed[2],) if prefixed else _OWN.get(text, ())
+    return next((unit for unit in said if is_of_kind(unit, plain)), None)
+
+
+def is_level(text: str) -> bool:
+    """Whether a text is the unit of a level, `dBV`, which is a logarithm."""
+    return bool(_LEVEL.match(text.strip()))
 
 
 def is_known(word: str) -> bool:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.formats.axis_units import axis_units
 from gear_damping.measurement.formats.blocks import blocks_of, listed
 from gear_damping.measurement.formats.cells import (
     FEWEST_BEHIND,
@@ -72,14 +73,16 @@ def read(path: Path, max_bytes: int) -> Table:
         if all(frame[k].dtype == frame[width].dtype for k in range(width)):
             frame = frame[~(frame == "").all(axis=1)]  # rows of delimiters alone
     lines = _Lines(path, max_bytes, first_line)
-    columns = [Cells(header.name(k), header.unit(k), frame[k].to_numpy(), lines, header.also(k)) for k in range(width)]
+    above = [row for line, row in islice(text.rows(), HEAD) if line < first_line]
+    axes = axis_units(above, width)
+    units = [header.unit(k) or axes.get(k) for k in range(width)]
+    columns = [Cells(header.name(k), units[k], frame[k].to_numpy(), lines, header.also(k)) for k in range(width)]
     columns, below = without_footer(columns)
     if not below and not blocks:
         columns, below = without_lone_rows(columns, _lone_rows(text, first_line))
     _refuse_long_form(path, columns)
     # Decimal commas may always stand in quotes.
     table = CellTable(path, columns, decimal_commas=True, decimal=decimal if decimal == "," or has_points else "")
-    above = [row for line, row in islice(text.rows(), HEAD) if line < first_line]
     above += [] if scope is None else scope[2]
     table.stated_rate = stated_rate(above, decimal=decimal)
     table.unread_rate = "" if table.stated_rate else unread_rate(above, decimal)

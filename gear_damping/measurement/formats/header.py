@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from gear_damping.errors import InputError
 from gear_damping.measurement.formats.bracket_words import unit_said
+from gear_damping.measurement.formats.factors import factor_in
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written
 from gear_damping.measurement.named_units import compound_at_end
 from gear_damping.measurement.time_column import NAMED, is_time
@@ -17,14 +18,6 @@ _WITHIN = re.compile(  # `Position (cm) Monitor Run`, `x {mm}`, where that is a 
 )
 _SLASH = re.compile(r"^[^/]+/\s*([^\W\d_][^\s]*|[°%µ][^\s]*)$")  # `Weg/mm`, as DIN 461 has it
 _ARGUMENT = re.compile(r"^\W*[^\W\d]\w?\s*\((t|k|n)\)\s*$")  # `x(t)`, `F_(t)`: what it is over, and no unit
-_FACTOR_BEHIND = re.compile(
-    r"[(\[](?P<unit>[^()\[\]]+)[)\]]\s*(?P<factor>[*x×·/]\s*\d[\d.,eE^+\-]*)\s*$"
-)  # `x [mm]*1000`
-_FACTOR_WITHIN = re.compile(  # `x*1000 [mm]`; of a stroke or a letter powers of ten alone: `CH x2 [V]` is a channel
-    r"(?P<factor>[*×·]\s*\d[\d.,eE^+\-]*|(?:/\s*|\sx\s?)10+)\s*[(\[](?P<unit>[^()\[\]]+)[)\]]\s*$"
-)
-_FACTOR_BEFORE = re.compile(r"^(?P<factor>\d[\d.,eE^+\-]*)\s*[*×·]\s*[^\W\d].*[(\[](?P<unit>[^()\[\]]+)[)\]]\s*$")
-_IN_STEPS = re.compile(r"\s(?:in|/)\s+(\d[\d.,/]*\s*[A-Za-zµμ°][\w/^]*)\s*$")  # `x in 0.1mm`
 _IN = re.compile(r"(?:^|\s)in\s+([^\W\d]\S*|[°%µ]\S*)\s*$")  # `C1 in V`, as oscilloscopes of Rohde & Schwarz have it
 _INDEX = re.compile(r"\w\[\d+\]\s*$")  # `data[3]` is a name, no unit
 _NO_UNIT = ("", "-", "#")
@@ -233,11 +226,8 @@ def bracket_unit(name: str) -> str | None:
     """
     if _INDEX.search(name) or _ARGUMENT.match(name):
         return None
-    for pattern in (_FACTOR_BEHIND, _FACTOR_WITHIN, _FACTOR_BEFORE):
-        if (scaled := pattern.search(name)) and _is_unit(scaled["unit"].strip()):
-            return f"{scaled['unit'].strip()}*{scaled['factor'].lstrip('*x×· ')}".replace("*/", "/")
-    if (step := _IN_STEPS.search(name)) and multiple_of_a_unit(step[1]):
-        return step[1]
+    if scaled := factor_in(name):
+        return scaled
     found = _BRACKETS.search(name)
     if found is not None and (said := unit_said(found[1])):
         return said
