@@ -1,7 +1,7 @@
 """What users hand over in Python, checked at the door: one message names the argument, the rule and the remedy."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from math import inf, isfinite
 from numbers import Number as AnyNumber
 from numbers import Real as AnyReal
@@ -17,7 +17,7 @@ from gear_damping.errors import InputError, Problem, with_article
 from gear_damping.explanation.explain import Listener
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.model import Model
-from gear_damping.schema.values import Flag, Given, Number, OneOf, Problems
+from gear_damping.schema.values import Flag, Given, Number, OneOf, Problems, Value
 from gear_damping.simulation.solver_settings import Engine, Solver
 
 COUNT = Number(1, whole=True)  # of what there has to be one at least
@@ -85,14 +85,25 @@ def refuse_other_solver(solver: object) -> None:
     refuse_other_kind("solver", solver, Solver, "gd.Solver(substeps=4)")
     problems = Problems()
     for name, kind in SOLVER.items() if isinstance(solver, Solver) else ():
-        try:
-            kind.read(getattr(solver, name), name)
-        except InputError as error:
-            wrong = error.problems[0]
-            problems.append(Problem(f"solver.{name}", wrong.rule, wrong.value, wrong.remedy))
+        problems += wrong_values(f"solver.{name}", getattr(solver, name), kind)
     problems.raise_any()
     if isinstance(solver, Solver):
         refuse_other_call("solver.progress", solver.progress)
+
+
+def wrong_values(key: str, value: object, kind: Value) -> list[Problem]:
+    """What a kind of values says of one; nothing where it is of the kind.
+
+    Args:
+        key: Its key.
+        value: As it was given.
+        kind: What it has to be.
+    """
+    try:
+        kind.read(value, key.rpartition(".")[2])
+    except InputError as error:
+        return [replace(problem, key=key) for problem in error.problems]
+    return []
 
 
 def refuse_other_call(name: str, value: object) -> None:

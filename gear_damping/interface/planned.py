@@ -136,7 +136,7 @@ def plan(
     solver, handed = solver or Solver(), Handed(model)
     asked = Asked(
         handed.tests(tests),
-        handed.each("sensors", sensors, (str, PlannedSensor), handed.sensor),
+        handed.sensors(sensors),
         handed.each("unknown", unknown, (str, Unknown), handed.unknown),
         handed.goal(goal),
     )

@@ -145,3 +145,9 @@ def test_what_is_no_model_is_answered(model):
     tests, sensor = gd.PlannedTests(durations=(1.0,), sampling_rate=500), gd.PlannedSensor("response", snr_db=30)
     for ask in (lambda: gd.simulate(model, **SAMPLED), lambda: gd.plan(model, tests, sensor)):
         assert "is no model: a system with its effects; remedy: give a gd.Model, for example" in said_of(ask)
+
+
+def test_what_another_option_decides_is_not_unknown():
+    tests, sensor = gd.PlannedTests(durations=(0.01,), sampling_rate=4e4), gd.PlannedSensor("response", noise=1e-7)
+    said = said_of(lambda: gd.plan(pair(), tests, sensor, unknown="gear_torque"))
+    assert f"- plan.unknown = 'gear_torque': {BALANCED.format('')}" in said
