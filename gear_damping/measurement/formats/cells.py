@@ -24,7 +24,8 @@ MOST_BELOW = 20  # rows that may lie below a table, and more of its own
 _NUMERAL = r"\s*[+-]?\.?\d[\d.,]*([eE][+-]?\d+)?"
 # A unit behind a blank, or at once where it is no letter that may say milli or mega.
 _WITH_UNIT = re.compile(rf"{_NUMERAL}(\s+(?P<apart>[A-Za-zµμ°%][^\s\d]*)|(?P<close>[A-Za-zµμ°][^\s\d]+|[VNs%°]))\s*")
-_WITH_LETTER = re.compile(rf"{_NUMERAL}(?P<behind>[^\d\s.,;+\-]\S*)\s*$")
+_WITH_LETTER = re.compile(rf"{_NUMERAL}\s*(?P<behind>[^\d\s.,;+\-]\S*)\s*$")
+_HEXADECIMAL = re.compile(r"\s*0[xX][\da-fA-F]+\s*$")
 LISTED = 8  # columns that a message lists
 
 
@@ -144,6 +145,25 @@ def unit_in(cell: str) -> str:
         return unit if unit and parse_unit(unit) else ""
     except InputError:
         return ""
+
+
+def _with_letters(cells: Sequence[str]) -> tuple[str, str] | None:
+    """What is said of cells that are no plain numbers, but hexadecimal or with something behind them; else None."""
+    told = [cell for cell in cells if not is_absent(cell)]
+    if told and all(map(_HEXADECIMAL.match, told)):
+        rule = f"a hexadecimal number, and so are all of its {len(cells)} cells"
+        return rule, f"write them as decimal ones: {int(told[0], 16)} for {told[0].strip()}"
+    found = [_WITH_LETTER.match(cell) for cell in told]
+    if not told or found[0] is None:
+        return None
+    first = {one["behind"]: cell.strip() for one, cell in reversed([*zip(found, told, strict=True)]) if one}
+    if len(first) == 1 or None in found:
+        rule = f"a number with '{found[0]['behind']}' behind it, and none of its {len(cells)} cells is a plain one"
+        return rule, "write plain numbers in the file, and what stands behind them as the unit of the channel"
+    shown = [f"'{behind}' ({first[behind]})" for behind in list(dict.fromkeys(one["behind"] for one in found))[:SHOWN]]
+    more = " and more" if len(first) > SHOWN else ""
+    rule = f"its {len(cells)} cells change what stands behind their numbers: {', '.join(shown)}{more}"
+    return rule, "write all of them as plain numbers of one unit, converted where it is another one"
 
 
 def is_word(cell: str) -> bool:
@@ -297,11 +317,7 @@ class CellTable(Table):
         if len(cells) > 1 and len(bad) == len(cells) and not is_told(cells[0]):
             rule, held = f"not a number, and no other of its {len(cells)} cells is one", self._with_numbers()
             remedy = f"name another column: {held}" if held else "name another column"
-            if behind := _WITH_LETTER.match(cells[0]):
-                rule = (
-                    f"a number with '{behind['behind']}' behind it, and none of its {len(cells)} cells is a plain one"
-                )
-                remedy = "write plain numbers in the file, and what stands behind them as the unit of the channel"
+            rule, remedy = _with_letters(cells) or (rule, remedy)
             return [Problem(f"{self.path.name}, {title}", rule, cells[0], remedy, str(self.path))]
         if ends := self._ends_early(cells, bad):
             return [Problem(f"{self.path.name}, {title}", *ends, str(self.path))]
