@@ -1,12 +1,13 @@
 """The time that a search may take, and what it then has not tried."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from math import inf
 from time import monotonic
 
 SEARCH_SHARE = 0.85  # of the time; the rest is for what is under way, for opening held-out records,
+LATE = 0.5  # of the time: from there on what promises little waits for what another leaves of it
 LAST_SHARE = 0.97  # and for seeing whether what was found is what it seems
 SCORED_SHARE = 0.92  # of it: no effect is scored later, as what scores are for took 5 to 8 % of five slow minutes
 MORE = 4  # times the minutes that were too few: the next try should not be too short too
@@ -83,6 +84,15 @@ class Budget:
     def refuses(self, what: str, is_last: bool = False) -> bool:
         """Whether there is no time for it, which is then noted; for what comes last there is more."""
         return self._noted(what, self.all_spent if is_last else self.spent)
+
+    def postpones(self, what: str) -> bool:
+        """Whether it is late, so that what promises little waits; it is noted until it is asked for again."""
+        return self._noted(what, self._is_over(LATE))
+
+    def asks_again(self, names: Iterable[str]) -> None:
+        """What had waited has a new score."""
+        again = set(names)
+        self.not_tried[:] = [what for what in self.not_tried if what not in again]
 
     def _noted(self, what: str, refused: bool) -> bool:
         if refused and what not in self.not_tried:

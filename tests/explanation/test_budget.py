@@ -41,6 +41,17 @@ def test_what_comes_last_has_time_when_the_search_is_over():
         assert made.all_spent is is_over
 
 
+def test_what_promises_little_waits_from_half_of_the_time_on_and_is_noted_until_it_is_asked_for_again():
+    clock = Clock()
+    made = Budget(5.0, clock)
+    for second, is_late in ((149.0, False), (151.0, True)):
+        clock.now = second
+        assert made.postpones("shaft_torsion") is is_late
+    made.postpones("sensor_lowpass")
+    made.asks_again(["shaft_torsion", "profile_error"])
+    assert made.not_tried == ["sensor_lowpass"]
+
+
 def test_effects_are_scored_until_what_scores_are_for_needs_the_time():
     clock = Clock()
     made = Budget(5.0, clock)

@@ -192,7 +192,7 @@ def test_a_full_fit_is_given_up_where_it_cannot_take_the_place_of_what_is_there(
     made_up.full_fits(ranked, before, before)
     assert asked == [math.inf, 9.0]  # a quarter of what the first one took
     asked.clear()
-    ranked[0].candidate.strengths = (0, 1, 2)  # fitted last, and it promises most
+    ranked[0].candidate.strengths = tuple(range(20))  # fitted last, and it promises most
     made_up.full_fits(ranked, before, before)
     assert asked == [math.inf, math.inf]
 

@@ -24,6 +24,7 @@ from gear_damping.simulation.solver_settings import Solver
 
 LEAST_TAKEN = 0.25  # of what another takes of the fitted records, for a fit to be carried to its end,
 RIVALS_LEAVE = 1.25  # and where that is nearly all that is missing, of what it leaves: only rivals count then
+FEW = 8  # strengths of a law and of the harmonics of one: what has more tells single teeth apart or bends to any series
 LAST_ITERATIONS = 60  # of a cause that is accepted before its fit has converged
 Log = Callable[[str], None]
 
@@ -80,7 +81,9 @@ class Bench(Comparison):
         tried = candidates_for(outcome.hypothesis, self.evidence, residuals)
         tried = tried if names is None else [candidate for candidate in tried if candidate.name in names]
         scoring = Scoring(self.solver, self.settings.taken_by_all, self.budget.refuses_score)
-        return scores(outcome, tried, self.noise.value, scoring)
+        found = scores(outcome, tried, self.noise.value, scoring)
+        self.budget.asks_again(score.candidate.name for score in found)
+        return found
 
     def noise_cost(self, outcome: Outcome) -> float:
         """Sum of squares that noise alone leaves of the fitted records."""
@@ -125,9 +128,9 @@ class Bench(Comparison):
     ) -> tuple[Refit, ...]:
         """The candidates worth it, fitted in full, the best first; one that will not get below `reach` is given up.
 
-        Those with few strengths are fitted first: one that takes nearly all spares the many of another, as of an error
-        of every tooth, and one that can do all that it does and more waits for the next round. What promises too little
-        for that comes last.
+        Those with few strengths are fitted first, of these what promises most: one that takes nearly all spares the
+        many of another, as of an error of every tooth, and one that can do all that it does and more waits for the next
+        round. What promises too little for that comes last.
         """
         if not ranked:
             return ()
@@ -136,8 +139,8 @@ class Bench(Comparison):
         worth = chosen(ranked, self.settings, predicted_gain, laws=self.evidence.has(Trait.REST))
         largest = max((score.gain for score in worth), default=0.0)
         enough = self.settings.taken_by_one * largest
-        for score in sorted(worth, key=lambda score: (score.gain < enough, len(score.candidate.strengths))):
-            if any(self._is_enough(fit, score, base) for fit in fits):
+        for score in sorted(worth, key=lambda one: (one.gain < enough, len(one.candidate.strengths) > FEW, -one.gain)):
+            if any(self._is_enough(fit, score, base) for fit in fits) or self._waits(score, fits, base):
                 continue
             with self.budget.trying(is_first=not fits and not outcome.hypothesis.causes):
                 if self.budget.refuses(score.candidate.name):
@@ -151,13 +154,32 @@ class Bench(Comparison):
             fits += [] if fit is None else [fit]
         return tuple(sorted(fits, key=lambda fit: fit.outcome.left_out_cost))
 
+    def _waits(self, score: Score, fits: Sequence[Refit], base: float) -> bool:
+        """Whether late in a search a candidate waits that promises little beside what another takes.
+
+        It is asked for again beside that one, of whose part it may have been promised some. So does another form of an
+        effect of which one came to little of its promise. Without a preload laws are far from linear, and what they
+        would come to is not foretold.
+        """
+        if self.evidence.has(Trait.REST) or score.candidate.replaced:
+            return False
+        taken = [(fit, 1 - fit.outcome.fitted.cost / base) for fit in fits]
+        most = max((share for fit, share in taken if self._is_clear(fit)), default=0.0)
+        forms = [share / fit.score.gain for fit, share in taken if fit.name == score.candidate.name]
+        is_small = score.gain < LEAST_TAKEN * most or (most > 0 and min(forms, default=1.0) < LEAST_TAKEN)
+        return is_small and self.budget.postpones(score.candidate.name)
+
+    def _is_clear(self, fit: Refit) -> bool:
+        """Whether left-out records validate a fit, and nothing says that it stands in for another."""
+        return fit.t > self.settings.accepted_t and fit.is_seen_in_fit and not fit.is_at_bound
+
     def _is_enough(self, fit: Refit, larger: Score, base: float) -> bool:
         """Whether a full fit takes most of what is promised of a candidate that can do the same and more.
 
         An error of every tooth does what an eccentricity does, and with its other numbers bends to whatever else is
         missing. What the smaller one leaves is asked for in the next round, the larger one among the answers.
         """
-        if fit.t <= self.settings.accepted_t or not fit.is_seen_in_fit or fit.is_at_bound:
+        if not self._is_clear(fit):
             return False
         taken = 1 - fit.outcome.fitted.cost / base
         return taken >= self.settings.taken_by_one * larger.gain and contains(larger, fit.score)
