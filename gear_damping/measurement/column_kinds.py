@@ -20,6 +20,9 @@ _FEWEST_JUMPS, _ONE_WAY, _COARSE = 2, 0.9, 50  # wraps; of the steps; steps that
 _BEYOND = 1.5  # times the way gone that an angle's range may be: a swing goes to and fro within it
 _TURNS = {"rad": 2 * np.pi, "deg": 360.0, "rev": 1.0}  # one turn in each unit that an angle is written in
 _FEWEST_PLACES = 8  # of a turn, assumed: what has fewer values is switched, and no angle
+_NUMBERED = {"sample", "frame", "index", "idx", "row", "seq", "sequence", "packet"}  # what is numbered, and no shaft
+_NUMBER_OF = {"no", "nr", "num", "number", "id"}  # words behind these
+_WORDS = re.compile(r"[\W_]+|(?<=[a-z])(?=[A-Z])")  # what is between those of a name
 _NEAR_TURN = 0.03  # of a turn: a ramp that ends so near to it wraps there
 
 
@@ -37,6 +40,8 @@ def kind_of(values: NDArray[np.float64], name: str, unit: str | None) -> tuple[s
         return CONSTANT, f"every sample is {values[0]:.6g}"
     if unit is None and not ANGLE.search(name) and counts_rows(values):
         return ROW_NUMBER, f"counts the rows from {values[0]:.0f} on"
+    if _numbers_samples(values, name):
+        return ROW_NUMBER, f"numbers the samples, in steps of {np.median(np.diff(values)):.0f}"
     for kind in (_pulses, _wrapping, _advancing):
         found = kind(values, name, unit)
         if found is not None:
@@ -47,6 +52,21 @@ def kind_of(values: NDArray[np.float64], name: str, unit: str | None) -> tuple[s
 def counts_rows(values: NDArray[np.float64]) -> bool:
     """Whether (n,) values are whole numbers that go on by 1 from row to row."""
     return values.size > 1 and values[0] == round(values[0]) and bool(np.all(np.diff(values) == 1))
+
+
+def _numbers_samples(values: NDArray[np.float64], name: str) -> bool:
+    """Whether (n,) values are whole numbers that rise, mostly by one step, under the name of frames or samples.
+
+    What stands in brackets behind such a name, `loggingSample(N)`, is its symbol.
+    """
+    words = [word.lower() for word in _WORDS.split(re.sub(r"[(\[].*$", "", name)) if word]
+    while len(words) > 1 and words[-1] in _NUMBER_OF:
+        words.pop()
+    if not words or not {words[-1], words[-1].removesuffix("s")} & _NUMBERED or values.size < _FEWEST_PLACES:
+        return False
+    steps = np.diff(values)
+    is_rising = bool(np.all(values == np.round(values)) and steps.min() > 0)
+    return is_rising and bool(np.mean(steps == np.median(steps)) > _ONE_WAY)
 
 
 def turn_of(values: NDArray[np.float64]) -> float | None:

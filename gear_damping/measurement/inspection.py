@@ -357,7 +357,10 @@ def _of_one_recording(
     """The rows of the longest recording of a file that holds several, and where the others are; else the rows."""
     if stamps is None or columns[stamps.index].values.size != length or rows[1] - rows[0] < LEAST_SAMPLES:
         return rows, ""
-    parts = [(first + rows[0], end + rows[0]) for first, end in recordings(columns[stamps.index].values[slice(*rows)])]
+    stamped = columns[stamps.index].values[slice(*rows)]
+    # In s the parts of a second are told, which begin again with each; in counts registers that were full.
+    found = min((recordings(one) for one in (stamped, stamped * stamps.in_seconds)), key=len)
+    parts = [(first + rows[0], end + rows[0]) for first, end in found]
     if len(parts) == 1:
         return rows, ""
     listed = ", ".join(str(list(part)) for part in parts[:MOST_LISTED]) + (" …" if len(parts) > MOST_LISTED else "")

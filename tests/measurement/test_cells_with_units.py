@@ -26,7 +26,7 @@ def test_units_that_change_are_told(tmp_path, sign, large, small):
 
 
 def test_one_word_behind_all_numbers_is_their_unit_as_before(tmp_path):
-    message = said(tmp_path, [f"{1.5 + 0.01 * k:.2f} foo" for k in range(40)])
+    message = said(tmp_path, [f"{1.5 + 0.01 * k:.2f}foo" for k in range(40)])
     assert "a number with 'foo' behind it, and none of its 40 cells is a plain one" in message
 
 

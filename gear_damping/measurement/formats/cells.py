@@ -24,7 +24,7 @@ MOST_BELOW = 20  # rows that may lie below a table, and more of its own
 _NUMERAL = r"\s*[+-]?\.?\d[\d.,]*([eE][+-]?\d+)?"
 # A unit behind a blank, or at once where it is no letter that may say milli or mega.
 _WITH_UNIT = re.compile(rf"{_NUMERAL}(\s+(?P<apart>[A-Za-zµμ°%][^\s\d]*)|(?P<close>[A-Za-zµμ°][^\s\d]+|[VNs%°]))\s*")
-_WITH_LETTER = re.compile(rf"{_NUMERAL}\s*(?P<behind>[^\d\s.,;+\-]\S*)\s*$")
+_WITH_LETTER = re.compile(rf"{_NUMERAL}(?P<apart>\s*)(?P<behind>[^\d\s.,;+\-]\S*)\s*$")
 _HEXADECIMAL = re.compile(r"\s*0[xX][\da-fA-F]+\s*$")
 LISTED = 8  # columns that a message lists
 
@@ -157,6 +157,8 @@ def _with_letters(cells: Sequence[str]) -> tuple[str, str] | None:
     if not told or found[0] is None:
         return None
     first = {one["behind"]: cell.strip() for one, cell in reversed([*zip(found, told, strict=True)]) if one}
+    if (len(first) == 1 or None in found) and found[0]["apart"]:
+        return None
     if len(first) == 1 or None in found:
         rule = f"a number with '{found[0]['behind']}' behind it, and none of its {len(cells)} cells is a plain one"
         return rule, "write plain numbers in the file, and what stands behind them as the unit of the channel"

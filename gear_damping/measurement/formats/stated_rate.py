@@ -30,6 +30,7 @@ _CLOCK = re.compile(r"^\s*clock\b", re.I)  # Hantek: `#CLOCK:500us`
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.I)
 _WITH_SIGNS = re.compile(r"[-+]?(\d+([.,]\d+)*[.,]?|[.,]\d+)(e[-+]?\d+)?", re.I)  # of decimals, or between thousands
 _OF_A_NAME = re.compile(r"[^\W\d]")  # before a number that is a part of it, as in `CH1` and `Signal_0`
+_SETTING = re.compile(r"\s*[A-Za-z][\w ]*=\s*[-+.\d]")  # a cell of its own: `CH1V,t0 = -0.3,tInc = 5e-04`
 _FRAMES = ["Frame", "Sub Frame"]  # the names of the first columns in tables of Vicon
 _LONGEST_NAME = 40  # characters, assumed: what is longer is a sentence
 _LONGEST_LINE = 60  # characters of a line that are told
@@ -60,7 +61,8 @@ def unread_rate(rows: Iterable[Sequence[str]], decimal: str = ".") -> str:
 
 def _stated(rows: Sequence[Sequence[str]], beside_arrays: bool, decimal: str) -> list[tuple[str, float | None, str]]:
     """Of every line that states a rate its words, the rate in Hz, None where it is not read, and the line."""
-    rows = [*rows, *(pair for above, below in pairwise(rows) for pair in _over_their_values(above, below))]
+    apart = [[cell] for row in rows if len(row) > 1 for cell in row if _SETTING.match(cell)]
+    rows = [*rows, *apart, *(pair for above, below in pairwise(rows) for pair in _over_their_values(above, below))]
     return [one for row in rows if (one := _of_row(row, beside_arrays, decimal)) is not None]
 
 
