@@ -116,14 +116,26 @@ DIFFERS = (effect_class("stiffness_by_record")(),)
 
 
 @pytest.mark.parametrize(
-    ("causes", "effects", "known"),
-    [(0, (), "noise"), (1, (), "noise"), (2, (), "scatter"), (3, (), "scatter"), (2, DIFFERS, "noise")],
+    ("causes", "effects", "unnamed", "known"),
+    [
+        (0, (), False, "noise"),
+        (1, (), False, "noise"),
+        (2, (), False, "scatter"),
+        (3, (), False, "scatter"),
+        (2, DIFFERS, False, "noise"),
+        (1, (), True, "scatter"),
+        (1, DIFFERS, True, "noise"),
+    ],
 )
-def test_the_scatter_between_records_counts_beside_several_causes(causes, effects, known, monkeypatch):
+def test_the_scatter_between_records_counts_beside_several_causes_and_a_rest(
+    causes, effects, unnamed, known, monkeypatch
+):
     monkeypatch.setattr(report_fields, "told_covariance", lambda *_: "noise")
     monkeypatch.setattr(report_fields, "wider_of_both", lambda *_: "scatter")
-    last = SimpleNamespace(hypothesis=SimpleNamespace(effects=effects), problem=of_records("abc"))
-    judged = SimpleNamespace(found=SimpleNamespace(accepted=(None,) * causes, outcome=last))
+    fitted = SimpleNamespace(converged=True)
+    last = SimpleNamespace(hypothesis=SimpleNamespace(effects=effects), problem=of_records("abc"), fitted=fitted)
+    found = SimpleNamespace(accepted=(None,) * causes, outcome=last, left=SimpleNamespace(visible=False))
+    judged = SimpleNamespace(found=found, verdict=SimpleNamespace(leaves_unnamed=unnamed))
     assert report_fields._known(judged, None) == known
 
 

@@ -230,10 +230,20 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
 
 
 def _known(judged: Judged, evidence: Evidence) -> Tensor:
-    """How well the last model's coordinates are known, the scatter between records counted beside several causes."""
+    """How well the last model's coordinates are known, the scatter between records counted where noise is not all.
+
+    It is not beside several causes, nor where something is left that has no name.
+    """
     last = judged.found.outcome
     covariances = told_covariance(last, evidence)
-    return wider_of_both(covariances, last) if _are_several(judged) and _may_scatter(judged) else covariances
+    scatters = (_are_several(judged) or _is_conditional(judged)) and _may_scatter(judged)
+    return wider_of_both(covariances, last) if scatters else covariances
+
+
+def _is_conditional(judged: Judged) -> bool:
+    """Whether something is left that has no name or is not random, or a fit has not converged."""
+    is_more = bool(judged.found.accepted) and is_visible(judged.found.left)
+    return judged.verdict.leaves_unnamed or is_more or not judged.found.outcome.fitted.converged
 
 
 def _are_several(judged: Judged) -> bool:
@@ -273,8 +283,7 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
     first, last = judged.found.nominal, judged.found.outcome
     energy = sum(ac_energy(record) for record in evidence.held)
     floor = sum(len(r.stacked) * noise.by_record[r.name] ** 2 for r in evidence.held)
-    is_more = bool(judged.found.accepted) and is_visible(judged.found.left)
-    conditional = judged.verdict.leaves_unnamed or is_more or not last.fitted.converged
+    conditional = _is_conditional(judged)
     missed = {
         "before": judged.verdict.leaves_unnamed or bool(judged.found.accepted),
         "after": judged.verdict.leaves_unnamed or (_may_scatter(judged) and (conditional or _are_several(judged))),
