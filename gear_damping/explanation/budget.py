@@ -31,6 +31,7 @@ class Budget:
     _begun: float = field(init=False)
     _look: float = field(default=0.0, init=False)
     _is_first: bool = field(default=False, init=False)
+    _waiting: set[str] = field(default_factory=set, init=False)
 
     def __post_init__(self) -> None:
         """Begin."""
@@ -87,11 +88,14 @@ class Budget:
 
     def postpones(self, what: str) -> bool:
         """Whether it is late, so that what promises little waits; it is noted until it is asked for again."""
+        if what not in self.not_tried and self._is_over(LATE):
+            self._waiting.add(what)
         return self._noted(what, self._is_over(LATE))
 
     def asks_again(self, names: Iterable[str]) -> None:
-        """What had waited has a new score."""
-        again = set(names)
+        """What had waited has a new score; what there was no time for at all stays noted."""
+        again = self._waiting.intersection(names)
+        self._waiting -= again
         self.not_tried[:] = [what for what in self.not_tried if what not in again]
 
     def _noted(self, what: str, refused: bool) -> bool:

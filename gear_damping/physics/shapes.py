@@ -1,12 +1,13 @@
-"""Small shapes that several effects share: powers without infinite slopes, checks of lists."""
+"""Small shapes that several effects share: powers without infinite slopes, a shaft's share, checks of lists."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import torch
 from torch import Tensor
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.physics.cause import Rig
+from gear_damping.physics.cause import SHAFTS, Rig
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Values
 
@@ -34,6 +35,14 @@ def sign_change_rate(force: Tensor, width: Tensor, mass: Tensor) -> Tensor:
     a step may cover was measured by step halving.
     """
     return torch.maximum(force / (width * mass), 0.09 / width)
+
+
+def share_of_shaft(shaft: str, base: Mapping[str, Any]) -> Any:
+    """The part of the acceleration along the line of action that a mesh force gives to the gear of a shaft."""
+    own, other = (
+        base[f"base_radius_{one}"] ** 2 / base[f"inertia_{one}"] for one in sorted(SHAFTS, key=lambda s: s != shaft)
+    )
+    return own / (own + other)
 
 
 def padded(parts: Mapping[str, Tensor]) -> dict[str, Tensor]:

@@ -10,6 +10,7 @@ from torch import Tensor
 from gear_damping.physics.cause import SHAFTS, Cause, Recipe, Rig
 from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.shapes import share_of_shaft
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import ExtraStates, LoadPath, Values
 
@@ -64,7 +65,7 @@ def _on_the_other_shaft(options: Mapping[str, Any], values: Mapping[str, float],
     """
     own = options["shaft"]
     other = SHAFTS[1 - SHAFTS.index(own)]
-    share, wheel = _share(own, base), {shaft: _wheel(shaft, base) for shaft in SHAFTS}
+    share, wheel = share_of_shaft(own, base), {shaft: _wheel(shaft, base) for shaft in SHAFTS}
     scale = (share * base[f"base_radius_{other}"] / ((1 - share) * base[f"base_radius_{own}"])) ** 2
     machine = (1 / values["motor_inertia"] + 1 / wheel[own]) / scale - 1 / wheel[other]
     if machine <= 0:  # no machine is heavy enough
@@ -75,15 +76,9 @@ def _on_the_other_shaft(options: Mapping[str, Any], values: Mapping[str, float],
     )
 
 
-def _share(own: str, base: Mapping[str, Any]) -> Any:
-    """Of the motion along the line of action that a force there gives to the gear on a shaft."""
-    pinion, gear = (base[f"base_radius_{shaft}"] ** 2 / base[f"inertia_{shaft}"] for shaft in SHAFTS)
-    return (pinion if own == "pinion" else gear) / (pinion + gear)
-
-
 def _wheel(own: str, base: Mapping[str, Any]) -> Any:
     """Inertia of the gear on a shaft, which is scaled where an equivalent mass was given."""
-    return base["equivalent_mass"] * base[f"base_radius_{own}"] ** 2 / _share(own, base)
+    return base["equivalent_mass"] * base[f"base_radius_{own}"] ** 2 / share_of_shaft(own, base)
 
 
 class ShaftTorsion(ExtraStates, LoadPath):
@@ -116,7 +111,7 @@ class ShaftTorsion(ExtraStates, LoadPath):
         """The shaft between the inertias, which are scaled where an equivalent mass was given."""
         own = self.chosen["shaft"]
         stiffness, motor, radius = values["stiffness"], values["motor_inertia"], base[f"base_radius_{own}"]
-        share, wheel = _share(own, base), _wheel(own, base)
+        share, wheel = share_of_shaft(own, base), _wheel(own, base)
         gears = wheel + wheel * share / (1 - share)  # the other gear as this shaft feels it
         damping = 2 * values["damping_ratio"] * torch.sqrt(stiffness / (1 / motor + 1 / gears))
         mesh_rate = base["mean_stiffness"] / base["equivalent_mass"]

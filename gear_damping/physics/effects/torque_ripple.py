@@ -7,9 +7,10 @@ import torch
 from torch import Tensor
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.physics.cause import SHAFTS, Cause, Recipe, Rig
+from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.shapes import share_of_shaft
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Load, LoadFactor, Values
 
@@ -61,8 +62,7 @@ def _alone(options: Mapping[str, Any], values: Mapping[str, float], base: Mappin
 
 def _per_pinion_torque(base: Mapping[str, Any]) -> Any:
     """The force of a torque of the pinion alone, which speeds up both shafts, per torque."""
-    pinion, gear = (base[f"base_radius_{s}"] ** 2 / base[f"inertia_{s}"] for s in SHAFTS)
-    return pinion / (pinion + gear) / base["base_radius_pinion"]
+    return share_of_shaft("pinion", base) / base["base_radius_pinion"]
 
 
 class TorqueRipple(Load, LoadFactor):
