@@ -84,7 +84,9 @@ class Budget:
 
     def refuses(self, what: str, is_last: bool = False) -> bool:
         """Whether there is no time for it, which is then noted; for what comes last there is more."""
-        return self._noted(what, self.all_spent if is_last else self.spent)
+        refused = self._noted(what, self.all_spent if is_last else self.spent)
+        self._waiting -= {what} if refused else set()
+        return refused
 
     def postpones(self, what: str) -> bool:
         """Whether it is late, so that what promises little waits; it is noted until it is asked for again."""
