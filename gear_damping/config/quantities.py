@@ -1,16 +1,13 @@
 """Numbers with units in the configuration: parameters become SI here, other keys as `schema.values.Number` has it."""
 
 from collections.abc import Container, Mapping, Sequence
-from dataclasses import replace
 from math import isfinite
 from typing import Any
 
 from gear_damping.config.keys import unit_of
 from gear_damping.errors import InputError, Problem
 from gear_damping.physics.parameter import Parameter
-from gear_damping.units import DIGITS, LEVEL, SUFFIXES, parse_unit, said_as, spoken, to_si
-
-LEVEL_ENDING = "_db"  # of the name of a level
+from gear_damping.units import DIGITS, SUFFIXES, parse_unit, said_as, spoken, to_si
 
 
 def split_suffix(key: str, known: Container[str]) -> tuple[str, str | None]:
@@ -80,7 +77,6 @@ def parameter_value(
     Raises:
         InputError: its type, unit or range is wrong.
     """
-    parameter = replace(parameter, unit=unit_in(parameter))
     if not parameter.vector:
         found = quantity(value, parameter.unit, key, source, unit)
         _refuse(parameter.problem(found, key, source))
@@ -94,11 +90,6 @@ def parameter_value(
     for i, number in enumerate(numbers):
         _refuse(parameter.problem(number, f"{key}[{i}]", source))
     return numbers
-
-
-def unit_in(parameter: Parameter) -> str:
-    """The unit that a parameter is said in: one whose name ends in `_db` is a level, whose number is its dB."""
-    return LEVEL if parameter.unit == "1" and parameter.name.endswith(LEVEL_ENDING) else parameter.unit
 
 
 def _as_list(value: Any) -> str:

@@ -163,7 +163,7 @@ class Bench(Comparison):
         """
         if self.evidence.has(Trait.REST) or score.candidate.replaced:
             return False
-        taken = [(fit, 1 - fit.outcome.fitted.cost / base) for fit in fits]
+        taken = [(fit, _taken(fit, base)) for fit in fits]
         most = max((share for fit, share in taken if self._is_clear(fit)), default=0.0)
         forms = [share / fit.score.gain for fit, share in taken if fit.name == score.candidate.name]
         is_small = score.gain < LEAST_TAKEN * most or (most > 0 and min(forms, default=1.0) < LEAST_TAKEN)
@@ -181,8 +181,7 @@ class Bench(Comparison):
         """
         if not self._is_clear(fit):
             return False
-        taken = 1 - fit.outcome.fitted.cost / base
-        return taken >= self.settings.taken_by_one * larger.gain and contains(larger, fit.score)
+        return _taken(fit, base) >= self.settings.taken_by_one * larger.gain and contains(larger, fit.score)
 
     def _reach(self, most: float, base: float, against: Outcome) -> float:
         """The cost that another fit has to get below, where one took the `most` of it.
@@ -354,3 +353,8 @@ def _without(hypothesis: Hypothesis, name: str) -> Hypothesis:
         causes=tuple(cause for cause in hypothesis.causes if cause != name),
     )
     return restored(left, name)
+
+
+def _taken(fit: Refit, base: float) -> float:
+    """Share of a cost that a full fit takes."""
+    return 1 - fit.outcome.fitted.cost / base

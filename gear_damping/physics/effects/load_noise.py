@@ -17,7 +17,7 @@ class LoadNoise(HeldLoad):
     refinement = 1.2  # of the steps, measured by step halving: the load has content up to half the rate
     equation = "F + w_k on sample k, std(w) = |F0| 10^(-SNR/20)"
     reference = "Yousfi et al. (2026), noise on the load"
-    parameters: ClassVar = (Parameter("snr_db", "1", 20.0, "mean load to noise in dB", -40, 200),)
+    parameters: ClassVar = (Parameter("snr_db", "dB", 20.0, "mean load to noise in dB", -40, 200),)
     needs: ClassVar = (Trait.PRELOAD,)
 
     def draw(self, values: Values, mean_load: Tensor, samples: int, generator: torch.Generator) -> Tensor:

@@ -15,7 +15,7 @@ class SensorNoise(Sensor):
     name = "sensor_noise"
     equation = "y + w, std(w) = std(y) 10^(-SNR/20), per run"
     reference = "Yousfi et al. (2026), additive noise"
-    parameters: ClassVar = (Parameter("snr_db", "1", 30.0, "AC part of the run to noise in dB", -40, 200),)
+    parameters: ClassVar = (Parameter("snr_db", "dB", 30.0, "AC part of the run to noise in dB", -40, 200),)
     position = 70  # in the chain, behind what filters and delays
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
