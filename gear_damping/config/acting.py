@@ -54,8 +54,8 @@ ACTS: dict[str, tuple[str, ...]] = {  # a key that is not here is one of the nex
     "simulator.extended": RIG,
 }
 OF_ANY_FIT = ("simulator.plugins", "simulator.solver", "simulator.solver.accuracy", "simulator.extended")
-OF_A_RIG = (IDENTIFY, EXPLAIN)  # tasks that take simulator=… and family=none, which say which rig it is, and no more
-NOTHING_DRAWN = "none"  # the family of one rig: it says of every task but that of files alone what it does anyway
+OF_A_RIG = (IDENTIFY, EXPLAIN)  # tasks that take simulator=oscillator family=none: which rig it is, and no more
+NOTHING_DRAWN = "none"  # the family of one rig, without which no rig goes but the usual one
 SET_BY_TESTS = {"pinion_speed": "speeds", "initial_displacement": "amplitudes"}  # of the rig: that key of plan sets it
 OFF = {  # what is typed to say that nothing is wanted
     **dict.fromkeys(("checkpoint", "resume", "sweep", "ruled_out", "figures", "simulator.extended"), "null"),
@@ -123,7 +123,9 @@ def _is_acting(key: str, value: str, config: Mapping[str, Any], origin: Origin) 
         return False
     if key == "family" and task == PLAN:  # by the speed of the rig that it gives, or that it does not
         return value == NOTHING_DRAWN or not _says(config, "speeds")
-    if key == "family" and task in OF_A_RIG and (value == NOTHING_DRAWN or (is_extended and task == IDENTIFY)):
+    if key == "family" and task in OF_A_RIG and value == NOTHING_DRAWN:
+        return is_extended or dict(origin.choices).get("simulator") != origin.usual("simulator")
+    if key == "family" and task == IDENTIFY and is_extended:
         return True
     others = (one for one in origin.given_by(key) if not one.startswith(f"{key}."))
     return (key == "simulator" and task in OF_A_RIG) or any(_acts(one, task, is_extended) for one in others)

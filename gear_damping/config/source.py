@@ -80,6 +80,11 @@ class Origin:
         """The full keys that the chosen file of a group gives, a quantity with its unit as one."""
         return dict(_leaves({name: node for name, node in self._file(group).items() if name != "defaults"}))
 
+    def usual(self, group: str) -> str | None:
+        """The choice of a group where none is typed or given by an experiment."""
+        defaults = self._file("config").get("defaults", ())
+        return next((one[group] for one in defaults if isinstance(one, Mapping) and group in one), None)
+
     def _gives(self, place: str, key: str) -> bool:
         if place == EXTENDED:
             return self.extended is not None and _has({"simulator": self.extended[1]}, key)

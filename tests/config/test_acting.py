@@ -66,7 +66,7 @@ IDLE = [
       for task in ("identify", "explain", "inspect") for one in ("paper", "field", "bench")),
     ("plan", "family=paper", "plan.speeds says how fast the tests run"),
     ("plan", "family=field", "plan.speeds says how fast the tests run"),
-    ("inspect", "family=none", "it acts in task=train"),
+    *((task, "family=none", "it acts in task=train") for task in ("identify", "explain", "inspect")),
     ("inspect", "simulator=oscillator", "it acts in task=train"),
 ]  # fmt: skip
 
