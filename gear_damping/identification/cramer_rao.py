@@ -62,12 +62,14 @@ def cramer_rao(
         solver: Settings of the solver, those of the runs.
 
     Raises:
-        InputError: a name is unknown or there twice, there is not one damping law, or no positive noise.
+        InputError: a name is unknown or there twice, there is not one damping law, no positive noise, or the response
+            does not depend on something that nothing is known of.
     """
     names, used = (*free, *START), runs.response.shape[-1] if samples is None else samples
     flat = [*(_flat(runs, name) for name in free), *START]
     _refuse(runs, noise, names, flat, expected or {}, used)
     columns = torch.stack([_sensitivity(runs, one, used, solver) for one in flat], -1)
+    _refuse_unseen(columns, free, expected or {})
     for place, name in enumerate(names):
         if name == DAMPING_RATIO:  # the ratio grows with the coefficient
             columns[..., place] *= (runs.values[flat[place]] / runs.stated_ratio_percent).unsqueeze(-1)
@@ -101,6 +103,25 @@ def _refuse(
         for name, one in zip(names, flat, strict=True)
         if name == DAMPING_RATIO and not bool((runs.values[one] != 0).all())
     ]
+    if found:
+        raise InputError(found)
+
+
+def _refuse_unseen(columns: Tensor, free: Sequence[str], expected: Mapping[str, float]) -> None:
+    """Refuse what the response of a run does not depend on, which no record of it tells.
+
+    Args:
+        columns: Slopes of the response, (batch, time, n), those by what is free first.
+        free: What is free, in order.
+        expected: What is known beforehand.
+
+    Raises:
+        InputError: names all of it.
+    """
+    seen = (columns != 0).any(1).all(0).tolist()
+    unseen = [name for name, one in zip(free, seen, strict=False) if not one and name not in expected]
+    rule, remedy = "does not act on the response of a run, so that no record tells it", "leave it out"
+    found = [Problem("free", rule, name, remedy) for name in unseen]
     if found:
         raise InputError(found)
 

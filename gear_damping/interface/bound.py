@@ -6,6 +6,7 @@ from numbers import Real
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_damping.config.decided import decided_by_options
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.cramer_rao import cramer_rao
 from gear_damping.interface.arguments import names, numbers, of_every_run, plain, refuse_no_level
@@ -42,7 +43,8 @@ def bound(
         samples: How many samples of the record are used; all where absent.
 
     Raises:
-        InputError: a name is unknown, nothing moves, or neither or both of noise and snr_db are given.
+        InputError: a name is unknown, nothing moves, neither or both of noise and snr_db are given, or the response
+            tells nothing of what is unknown.
     """
     refuse_other_runs(runs)
     if noise is not None and snr_db is not None:
@@ -54,13 +56,38 @@ def bound(
         refuse_no_level("snr_db", snr_db)
     if samples is not None:
         Problems(whole_number_problems("samples", samples, SAMPLES)).raise_any()
-    expected = _expected(expected)
+    expected, free = _expected(expected), names("free", free)
+    _refuse_decided(runs, free)
     refuse_rest(runs.runs)
     response = runs.runs.response
     level = numbers("noise", noise) if snr_db is None else response.std(-1) * 10 ** (-snr_db / 20)
     Problems(of_every_run("noise", level, len(response))).raise_any()
-    found = cramer_rao(runs.runs, names("free", free), level, expected=expected, samples=samples)
-    return {name: found.deviation(name).numpy() for name in found.names}
+    found = cramer_rao(runs.runs, free, level, expected=expected, samples=samples)
+    deviations = {name: found.deviation(name).numpy() for name in found.names}
+    _refuse_no_bound({name: deviations[name] for name in free})
+    return deviations
+
+
+def _refuse_decided(runs: Simulation, free: Sequence[str]) -> None:
+    """Refuse what an option of the system decides, as the torque of a gear that follows the pinion's.
+
+    Raises:
+        InputError: names all of it.
+    """
+    decided = decided_by_options(runs.runs.model)
+    Problems(Problem("free", decided[one].rule, one, decided[one].remedy) for one in free if one in decided).raise_any()
+
+
+def _refuse_no_bound(deviations: Mapping[str, NDArray[np.float64]]) -> None:
+    """Refuse what the response does not tell from the other unknowns, as the gain of a torque beside that torque.
+
+    Raises:
+        InputError: names all of it.
+    """
+    rule = "has no bound in a run, whose response does not tell it from the other unknowns"
+    remedy = "leave one of them out, or say with expected={NAME: deviation} how well it is known"
+    untold = [name for name, one in deviations.items() if not np.isfinite(one).all()]
+    Problems(Problem("free", rule, name, remedy) for name in untold).raise_any()
 
 
 def _expected(given: object) -> dict[str, float] | None:

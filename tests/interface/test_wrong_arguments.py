@@ -184,6 +184,35 @@ def test_a_bound_of_what_has_none_is_answered(runs, given, said):
         gd.bound(runs, **{"noise": 1e-4, **given})
 
 
+@pytest.mark.parametrize(
+    ("free", "said"),
+    [
+        (
+            "gear_torque",
+            r"free = 'gear_torque': has no effect where gear_torque_mode is balanced: .*; remedy: leave it",
+        ),
+        (["damping_ratio", "gear_phase"], r"^- free = 'gear_phase': does not act on the response.*; remedy: leave it"),
+        (
+            ["pinion_torque", "torque_gain"],
+            r"free = 'torque_gain': has no bound in a run, .*; remedy: leave one of them",
+        ),
+    ],
+)
+def test_a_bound_of_what_the_response_does_not_tell_is_refused(free, said):
+    """All of them came out as nan, those of the start beside them too."""
+    pair = gd.Model(gd.GearPair(pinion_speed=300), [gd.FourierMeshStiffness(), gd.ViscousDamping()])
+    with pytest.raises(gd.InputError, match=said):
+        gd.bound(gd.simulate(pair, sampling_rate=4e4, n_samples=300), free, snr_db=30)
+
+
+def test_what_is_known_beforehand_alone_has_a_bound_too():
+    pair = gd.Model(gd.GearPair(pinion_speed=300), [gd.FourierMeshStiffness(), gd.ViscousDamping()])
+    run = gd.simulate(pair, sampling_rate=4e4, n_samples=300)
+    found = gd.bound(run, ["gear_phase", "damping_ratio"], snr_db=30, expected={"gear_phase": 0.2})
+    assert found["gear_phase"] == pytest.approx(0.2)
+    assert found["damping_ratio"] == gd.bound(run, snr_db=30)["damping_ratio"]
+
+
 def test_one_name_is_one_name_of_a_bound_too(runs):
     one, listed = (gd.bound(runs, free=free, noise=1e-4) for free in ("damping_ratio", ["damping_ratio"]))
     assert one["damping_ratio"] == listed["damping_ratio"]
