@@ -11,6 +11,12 @@ from torch import Tensor
 
 FAR = 2.0  # times an amplitude: nearer, no law of damping tells a much different ratio
 DAMPING_RATIO = "damping_ratio"  # stands for the coefficient of a model's one damping law
+# What helps where a ratio is given to a system or to a law of damping, which have none of their own.
+MEANT = dict.fromkeys(
+    (DAMPING_RATIO, "damping_ratio_percent", "zeta"),
+    "a ratio is what the coefficient of a damping law comes to in a model: give that, or the ratio in "
+    "gd.Model.from_config({…, 'viscous_damping': {}, 'damping_law': 'viscous_damping', 'damping_ratio_percent': 2})",
+)
 
 
 def gamma_factor(exponent: Tensor) -> Tensor:

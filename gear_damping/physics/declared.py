@@ -1,6 +1,6 @@
 """What systems and effects have in common: options and parameters that are declared, and chosen by name."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from inspect import Parameter as Argument
 from inspect import Signature
 from math import isfinite
@@ -24,6 +24,7 @@ class Declared:
     name: ClassVar[str]
     parameters: ClassVar[tuple[Parameter, ...]]
     options: ClassVar[tuple[Option, ...]] = ()
+    meant: ClassVar[Mapping[str, str]] = {}  # remedies for what people write instead of a parameter, by that name
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         """Give every final class the signature of its options and parameters."""
@@ -45,7 +46,7 @@ class Declared:
         declared = {parameter.name: parameter for parameter in self.parameters}
         known = [*options, *declared]
         problems = [
-            Problem(self._key(name), "no such parameter or option", remedy=nearest(name, known) if known else "")
+            Problem(self._key(name), "no such parameter or option", remedy=self._remedy(name, known))
             for name in given
             if name not in known
         ]
@@ -68,6 +69,10 @@ class Declared:
 
     def _key(self, name: str) -> str:
         return f"{self.name}.{name}"
+
+    def _remedy(self, name: str, known: Sequence[str]) -> str:
+        """What helps where there is nothing of this name."""
+        return self.meant.get(name) or (nearest(name, known) if known else "")
 
     def __setattr__(self, name: str, value: Any) -> None:
         """Refuse a new value, which models that hold this would not follow.

@@ -17,6 +17,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause
+from gear_damping.physics.damping_ratio import MEANT
 from gear_damping.physics.declared import Declared
 from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.scales import Scales
@@ -172,6 +173,8 @@ class BearingForce(Effect):
 
 class DampingLaw(DampingForce):
     """A damping force whose size can be stated as an equivalent damping ratio."""
+
+    meant = MEANT
 
     @abstractmethod
     def damping_ratio(self, values: Values, mass: Tensor, stiffness: Tensor, velocity: Tensor) -> Tensor:

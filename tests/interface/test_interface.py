@@ -1,5 +1,6 @@
 """The package in a user's own Python: what is there, how models are made and written, what is done with records."""
 
+import ast
 import subprocess
 import sys
 from dataclasses import replace
@@ -89,6 +90,18 @@ def test_what_is_wrong_with_an_effect_is_said_at_once():
     assert "power_law_damping.coefficient = nan: must be a finite number in N" in said
     with pytest.raises(gd.InputError, match="must be finite numbers in m"):
         gd.ProfileError(amplitudes=["a"], phases=[0.0])
+
+
+@pytest.mark.parametrize("kind", [gd.GearPair, gd.Oscillator, gd.ViscousDamping, gd.PowerLawDamping])
+@pytest.mark.parametrize("name", ["damping_ratio", "damping_ratio_percent", "zeta"])
+def test_where_a_ratio_is_given_is_said(kind, name):
+    with pytest.raises(
+        gd.InputError, match=rf"{name}: no such .*; remedy: a ratio is .* gd\.Model\.from_config"
+    ) as caught:
+        kind(**{name: 2})
+    node = str(caught.value).partition("from_config({…, ")[2].rstrip(")}")
+    given = {"system": "oscillator"} | ast.literal_eval(f"{{{node}}}")
+    assert gd.Model.from_config(given).given["viscous_damping.damping_coefficient"] == pytest.approx(0.04)
 
 
 def test_a_model_prints_its_equation_and_values():

@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from torch import Tensor
 
+from gear_damping.physics.damping_ratio import MEANT
 from gear_damping.physics.declared import Declared
 from gear_damping.physics.kinematics import Kinematics, Rotation
 from gear_damping.physics.parameter import Parameter
@@ -32,6 +33,7 @@ class System(Declared, ABC):
     spring: ClassVar[str | None] = None  # the parameter that is its constant stiffness; None where it has a mesh
     # sensor effects that its nominal fit allows for by offsets and gains of its own: no candidates
     covered_by_nuisance: ClassVar[frozenset[str]] = frozenset()
+    meant = MEANT
 
     @classmethod
     def has(cls, *traits: Trait) -> bool:
