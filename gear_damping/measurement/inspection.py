@@ -115,6 +115,7 @@ class Inspection:
         faults: What is wrong with the stamps, for people.
         rate_of: What the file calls a single number that may be the rate; "" where none was needed.
         taken: Which of several recordings one after another the rows are, for people; "" where there is one.
+        unread_rate: What the file says of the rate where that is not read and no rate is known; "" of any other file.
     """
 
     table: Table
@@ -126,6 +127,7 @@ class Inspection:
     faults: tuple[str, ...] = ()
     rate_of: str = ""
     taken: str = ""
+    unread_rate: str = ""
 
     @property
     def rate(self) -> float | None:
@@ -170,9 +172,11 @@ def inspect_table(table: Table, clock: str | int | None = None) -> Inspection:
     named, rate = (
         (may_be_rate or _stated_rate(table, columns, length, rows)) if base is None and stamps is None else ("", None)
     )
+    unread = (named or table.unread_rate) if base is None and not rate else ""
     base = steady_time(rate, rows[0], rows[1] - rows[0]) if rate else base
     found = [_seen(c, stamps, columns, base, length, table.clock(k)) for k, c in enumerate(columns)]
-    seen = Inspection(table, tuple(found), length, stamps, base, rows, faults, named, taken or some)
+    rate_of = named if rate else ""
+    seen = Inspection(table, tuple(found), length, stamps, base, rows, faults, rate_of, taken or some, unread)
     return replace(seen, columns=tuple(_by_own_clock(seen, column) for column in found))
 
 

@@ -81,7 +81,7 @@ def _time(found: Inspection) -> Iterator[str]:
         yield f"sampling_rate: {_mapping(stated)}   # guess: what the file calls {found.rate_of}"
     elif rate is None:
         stated = {"value": UNKNOWN, "unit": "Hz"}
-        unread = found.table.unread_rate
+        unread = found.unread_rate
         why = f"the file says '{unread}', which is not read" if unread else "nothing in the file says it"
         yield f"sampling_rate: {_mapping(stated)}   # {why}"
     else:

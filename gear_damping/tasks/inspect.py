@@ -124,7 +124,8 @@ def _told(found: Inspection, listed: Sequence[Guess]) -> Iterator[tuple[Column, 
 
 def _time(found: Inspection) -> str:
     if found.time is None and found.rate is None:
-        return "no column looks like time stamps, and the file says no rate"
+        said = f"what the file says, '{found.unread_rate}', is not read: write what it means, sampling_rate: 2 kHz"
+        return f"no column looks like time stamps, and {said if found.unread_rate else 'no rate is read from the file'}"
     n = found.rows[1] - found.rows[0]
     lasts = f"{found.rate:.6g} Hz, {n / found.rate:.4g} s" if found.rate else "no rate"
     if found.rate_of:

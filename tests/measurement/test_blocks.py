@@ -5,8 +5,10 @@ import pytest
 
 from gear_damping.errors import InputError
 from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.guessing import guessed
 from gear_damping.measurement.inspection import inspect_table, of_columns
 from gear_damping.measurement.load import load_measurement
+from gear_damping.measurement.starting_yaml import starting_yaml
 
 ROWS, STEPS = (300, 500), (0.005, 0.01)
 HEAD = "LabVIEW Measurement\t\nMulti_Headings\tYes\nX_Columns\tNo\n***End_of_Header***\t\n\t\n"
@@ -80,3 +82,10 @@ def test_the_longest_block_is_inspected_at_its_rate(tmp_path):
     assert (found.rows, found.rate) == ((300, 800), 100.0)
     assert found.taken.startswith("the longest of 2 blocks, of other rates: rows [0, 300] (200 Hz)")
     assert of_columns(found, list(found.measured)).rows == (300, 800)
+
+
+def test_the_longest_block_may_have_a_rate_that_is_not_read(tmp_path):
+    """It ended with an error of the program."""
+    found, system, listed = guessed(lvm(tmp_path, second="Delta_X\t2 kfoo"))
+    assert (found.rows, found.rate, found.unread_rate) == ((300, 800), None, "Delta_X 2 kfoo")
+    assert "# the file says 'Delta_X 2 kfoo', which is not read" in starting_yaml(found, system, listed)

@@ -304,6 +304,20 @@ def told(path, out):
     return (out / "inspection.txt").read_text()
 
 
+@pytest.mark.parametrize(
+    ("above", "said"),
+    [
+        ("", "no column looks like time stamps, and no rate is read from the file"),
+        ("Sample rate: 2 kfoo", "and what the file says, 'Sample rate: 2 kfoo', is not read: write what it means, "
+         "sampling_rate: 2 kHz"),
+    ],
+)  # fmt: skip
+def test_a_rate_that_the_file_says_and_is_not_read_is_told(above, said, tmp_path):
+    rows = "\n".join(f"{one:.5f},{two:.5f}" for one, two in zip(ANGLE, TORQUE, strict=True))
+    (tmp_path / "run.csv").write_text(f"{above}\n\nangle [rad],torque [N*m]\n{rows}\n".lstrip())
+    assert said in told(tmp_path / "run.csv", tmp_path / "out")
+
+
 def test_a_command_that_switches_has_levels_and_no_rounding(tmp_path):
     np.savez(tmp_path / "a.npz", t=TIME, u=6.0 * (TIME < 1), x=np.round(np.cos(20 * TIME), 1))
     said = told(tmp_path / "a.npz", tmp_path / "out")
