@@ -5,7 +5,7 @@ What reads and assembles data is imported where data is read, so that a YAML alo
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from math import pi
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 RECORD = re.compile(r"records\[(\d+)\]")
 ONE_RATE = 1e-6  # rates that differ by less are one, written with other digits
+DAMPING_RATIO = "damping_ratio"  # the parameter of any system that states its damping over the critical one
 OTHER_RATE = 0.01  # rates that differ by more are said
 
 
@@ -150,7 +151,8 @@ def _loaded(content: object, path: Path, max_bytes: int | None, plugins: Sequenc
     parameters = {**plan.parameters, **own}
     _refuse_unseen_spring(parameters.get("stiffness"), records, source)
     _refuse_longer_than_records(plan, records, source)
-    kept, own_system = _compared(_free(_of_one_force(records, parameters.get("stiffness")))), systems.get(plan.system)
+    driven = _free(_of_one_force(_overdamped(records, parameters), parameters.get("stiffness")))
+    kept, own_system = _compared(driven), systems.get(plan.system)
     found = Measurement(plan.system, parameters, kept, path.resolve(), plan.segment_s, own_system)
     return replace(found, records=with_what_is_fitted_twice(kept, found.base.responses))
 
@@ -263,6 +265,20 @@ def _of_one_force(records: list[Record], stiffness: Quantity | None) -> list[Rec
         replace(record, conditions=conditions, findings=(*record.findings, replace(note, record=record.name)))
         for record, conditions in zip(records, left, strict=True)
     ]
+
+
+def _overdamped(records: list[Record], parameters: Mapping[str, Quantity]) -> list[Record]:
+    """The records; where a stated damping is beyond the critical one, the first with a note of that."""
+    ratio = parameters.get(DAMPING_RATIO)
+    if ratio is None or ratio.value <= 1:
+        return records
+    of_teeth = ", and teeth in mesh have a few per cent" if "n_teeth_pinion" in parameters else ""
+    message = (
+        f"parameters.{DAMPING_RATIO} states {100 * ratio.value:g} %, beyond critical: nothing that is let go swings "
+        f"then{of_teeth}; write {ratio.value:g} % where that was meant"
+    )
+    note = Finding("overdamped", message, records[0].name, severity="note")
+    return [replace(records[0], findings=(*records[0].findings, note)), *records[1:]]
 
 
 def _compared(records: list[Record]) -> tuple[Record, ...]:

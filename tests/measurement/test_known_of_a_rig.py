@@ -6,7 +6,7 @@ import pytest
 import yaml
 
 from gear_damping.errors import InputError
-from gear_damping.measurement.load import check_declaration
+from gear_damping.measurement.load import check_declaration, load_measurement
 from gear_damping.units import to_si
 
 
@@ -102,3 +102,23 @@ def test_a_constant_force_is_told_that_it_may_not_be_uncertain(tmp_path):
     force = {"value": 3, "unit": "N", "uncertainty": 0.1}
     problems = problems_of(tmp_path, conditions={"force": force})
     assert "conditions of a gear_pair" in problems[0].rule
+
+
+@pytest.mark.parametrize(("stated", "notes"), [("1500 %", 1), ("120 %", 1), ("100 %", 0), ("15 %", 0), (0.15, 0)])
+@pytest.mark.parametrize("system", ["oscillator", "gear_pair"])
+def test_a_damping_beyond_the_critical_one_is_said_once(tmp_path, system, stated, notes):
+    """A heavily damped oscillator is possible, so that it is no more than said."""
+    known, own, record = {"damping_ratio": stated}, {"displacement": {"column": "y", "unit": "mm"}}, {}
+    if system == "gear_pair":
+        known |= {"n_teeth_pinion": 23, "n_teeth_gear": 41}
+        own = {"displacement": None, "transmission_error": {"column": "y", "unit": "um"}}
+        record = {"conditions": {"pinion_speed": "1100 rpm", "pinion_torque": "60 Nm", "gear_torque": "balanced"}}
+    (tmp_path / "a.csv").write_text("y\n" + "\n".join(f"{math.sin(0.3 * k):.6f}" for k in range(300)))
+    plan_of(tmp_path, known, own, system, **record)
+    found = [one for one in load_measurement(tmp_path / "measurement.yaml").findings if one.kind == "overdamped"]
+    assert [one.severity for one in found] == ["note"] * notes
+    for one in found:
+        said = stated.partition(" ")[0]
+        assert one.message.startswith(f"parameters.damping_ratio states {said} %, beyond critical")
+        assert one.message.endswith(f"write {int(said) / 100:g} % where that was meant")
+        assert ("teeth in mesh" in one.message) == (system == "gear_pair")
