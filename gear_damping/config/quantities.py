@@ -7,6 +7,7 @@ from typing import Any
 from gear_damping.config.keys import unit_of
 from gear_damping.errors import InputError, Problem
 from gear_damping.physics.parameter import Parameter
+from gear_damping.schema.values import is_not_finite
 from gear_damping.units import DIGITS, SUFFIXES, parse_unit, said_as, spoken, to_si
 
 
@@ -44,6 +45,7 @@ def quantity(value: Any, expected: str, key: str, source: str, unit: str | None 
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not isfinite(value):
         rule = "must be a finite number" + (f" in {unit or expected}" if (unit or expected) != "1" else "")
         remedy = "write a number" + (f", or {{value: …, unit: {expected}}}" if expected else "")
+        remedy += ": neither infinity nor nan is one" if is_not_finite(value) else ""
         raise InputError(Problem(key, rule, value, remedy, source))
     if unit and not expected:
         rule, remedy = "is in a unit, and that of the rig is not known", "add simulator.unit=m, or what the rig is in"

@@ -5,13 +5,13 @@ A check raises InputError with keys relative to the value ("" for the value itse
 
 import re
 from dataclasses import dataclass
-from math import inf, isfinite
+from math import inf
 from types import MappingProxyType as Frozen
 from typing import Any, NoReturn
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.measurement.record import Quantity
-from gear_damping.schema.values import Number, OneOf, Text, Value, refuse
+from gear_damping.schema.values import Number, OneOf, Text, Value, is_not_finite, refuse
 from gear_damping.units import is_of_kind, parse_unit, said_as, spoken, to_si
 
 ORDERS = (1, 2, 4)  # poles of a Butterworth filter that the simulated sensor has too (`sensor_lowpass`)
@@ -29,7 +29,6 @@ EACH_ITS_OWN = "make each file a record of its own, with the same channels"
 Found = list[Problem]
 _THOUSANDS = re.compile(r"^\s*([+-]?\d{1,3}(?:[, '’]\d{3})+)\s*([A-Za-z%µμ°].*?)?\s*$")  # `1,000 Hz`, `1 000 Hz`
 _BARE = re.compile(r"^\s*[+-]?\d+(\.\d+)?\s*$")
-_NOT_FINITE = re.compile(r"^\s*[+-]?\.?(inf|infinity|nan)\b", re.I)
 _DECIMAL_COMMA = re.compile(r"^\s*([+-]?\d+),(\d+([eE][+-]?\d+)?\s*\D.*?)\s*$")
 _BOTH_SIGNS = re.compile(r"^\s*(?:±|\+/?-)\s*(\S.*?)\s*$")  # `±50 mm`, `+-50 mm`
 _ELECTRIC = ("V", "A")  # in which columns of sensors usually are
@@ -187,6 +186,8 @@ class Measured(Value):
         if isinstance(value, dict) and "unit" not in value and (said := spoken(value.get("value"))):
             value = value | {"value": said[0], "unit": said[1]}  # {value: 5 %, uncertainty: 0.02}
         if self.unit == "1" and not isinstance(value, dict):
+            if is_not_finite(value):
+                refuse("must be a finite number", value, self._finite(name))
             value = {"value": Number().read(value, name)}
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
         if is_number and value == 0 and self.unit not in (None, "own"):  # nothing is nothing in every unit
@@ -194,7 +195,7 @@ class Measured(Value):
         if not isinstance(value, dict):
             self._refuse_without_unit(value, name)
         problems = self._unknown(value)
-        number = self._part(value, "value", Number(), None, problems)
+        number = self._number(value, name, problems)
         unit = self._unit(value, problems)
         uncertainty = self._part(value, "uncertainty", Share(), 0.0, problems) if self.uncertain else 0.0
         more = self.more(value, problems)
@@ -205,8 +206,9 @@ class Measured(Value):
     def _refuse_without_unit(self, value: Any, name: str) -> NoReturn:
         """Say what is wrong with a value that is no mapping; of a number that no unit would help, that first."""
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if (is_number and not isfinite(value)) or (isinstance(value, str) and _NOT_FINITE.match(value)):
-            refuse("must be a finite number, and needs a unit", value, self._remedy(None, None, name))
+        if is_not_finite(value):
+            remedy = f"{self._remedy(None, None, name)}; leave {name} out where it is not known"
+            refuse("must be a finite number, and needs a unit", value, remedy)
         if is_number:
             self._refuse_sign(value, self._remedy(None, value, name))
         refuse("needs a value and a unit", value, self._remedy(value if is_number else None, value, name))
@@ -253,6 +255,17 @@ class Measured(Value):
     @property
     def _example(self) -> str:
         return {None: "V", "own": "m/s^2/V"}.get(self.unit, self.unit)
+
+    def _number(self, value: dict, name: str, problems: Found) -> float | None:
+        """The number of the mapping; None where it has none that is finite, which is noted."""
+        if is_not_finite(number := value.get("value")):
+            problems.append(Problem("value", "must be a finite number", number, self._finite(name)))
+            return None
+        return self._part(value, "value", Number(), None, problems)
+
+    def _finite(self, name: str) -> str:
+        """What helps where infinity or nan stands for a value."""
+        return f"write a finite number, or leave {name} out where it is not known"
 
     def _unknown(self, value: dict) -> Found:
         found = []
@@ -379,6 +392,6 @@ class Ratio(Measured):
     def read(self, value: Any, name: str) -> Any:
         """The quantity, as a part of one."""
         number = value.get("value") if isinstance(value, dict) and not value.get("unit") else value
-        if isinstance(number, int | float) and not isinstance(number, bool) and number > 1:
+        if isinstance(number, int | float) and not isinstance(number, bool) and 1 < number < inf:
             refuse(f"means {100 * number:g} %", value, f"write {name}: {number:g} %, or {100 * number:g} % where it is")
         return super().read(value, name)

@@ -123,7 +123,8 @@ def _numbers(value: Any, parameter: Parameter, key: str) -> float | tuple[float,
     if len(numbers) < len(listed) or not numbers or not all(map(isfinite, numbers)):
         what = "numbers" if parameter.vector else "number"
         rule = f"must be {'finite' if parameter.vector else 'a finite'} {what} in {parameter.unit}"
-        return Problem(key, rule, value, "give it in SI")
+        is_lost = bool(numbers) and not all(map(isfinite, numbers))
+        return Problem(key, rule, value, "leave it out where it is not known" if is_lost else "give it in SI")
     wrong = (parameter.problem(number, key) for number in numbers)
     problem = next((one for one in wrong if one), None)
     return problem or (tuple(numbers) if parameter.vector else numbers[0])

@@ -17,6 +17,7 @@ from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.units import SUFFIXES, number_in
 
 _COMMA = re.compile(r"[+-]?\d+,\d+")  # a number with a decimal comma
+_NOT_FINITE = re.compile(r"^\s*[+-]?\.?(inf|infinity|nan)\b", re.I)
 
 
 class Problems(list[Problem]):
@@ -39,6 +40,13 @@ class Problems(list[Problem]):
 def refuse(rule: str, value: object = None, remedy: str = "", at: str = "") -> NoReturn:
     """Raise InputError about a value, or about the key `at` in it."""
     raise InputError(Problem(at, rule, value, remedy))
+
+
+def is_not_finite(value: object) -> bool:
+    """Whether it is infinite or nan, or a text that begins like it, `inf mm`."""
+    if isinstance(value, str):
+        return bool(_NOT_FINITE.match(value))
+    return isinstance(value, int | float) and not isfinite(value)
 
 
 class Value:
@@ -139,13 +147,14 @@ class Number(Value):
             value = number_in(value, unit)
         kind, words = (int, "a whole number") if self.whole else (int | float, "a number")
         words += f", or a quantity such as 1 {unit}" if unit not in ("", "1") else ""
+        if is_not_finite(value):
+            rule = f"must be a {'whole' if self.whole else 'finite'} number"
+            refuse(rule, value, f"write {words}: neither infinity nor nan is one")
         if isinstance(value, bool) or not isinstance(value, kind):
             remedy = f"write {words}"
             if isinstance(value, str) and _COMMA.fullmatch(value.strip()):
                 remedy = f"write {value.strip().replace(',', '.')}, with a decimal point"
             refuse(f"must be {'a whole number' if self.whole else 'a finite number'}", value, remedy)
-        if not isfinite(value):
-            refuse("must be a finite number", value, f"write {words}")
         if not (self.least < value < self.most if self.exclusive else self.least <= value <= self.most):
             refuse(*self._range(value))
         if self.nonzero and value == 0:

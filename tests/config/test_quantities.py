@@ -168,6 +168,20 @@ def test_a_swept_quantity_is_a_number_of_the_table(key, value, found):
     assert number_of(key, value) == (found if found is None or isinstance(found, str) else pytest.approx(found))
 
 
+@pytest.mark.parametrize(
+    ("word", "remedy"),
+    [
+        ("training.learning_rate=.inf", "write a number: neither infinity nor nan is one"),
+        ("seeds=nan", "write a whole number: neither infinity nor nan is one"),
+        ("simulator.pinion_torque=inf", "write a number, or {value: …, unit: N*m}: neither infinity nor nan is one"),
+    ],
+)
+def test_what_helps_beside_infinity_is_a_finite_number(word, remedy):
+    with pytest.raises(InputError) as raised:
+        read_settings(*composed(read_command_line(["task=train", word]).overrides))
+    assert [one.remedy for one in raised.value.problems] == [remedy]
+
+
 @pytest.mark.parametrize("level", ["20", "20dB", "20 dB", "{value: 20, unit: dB}"])
 def test_a_level_is_in_db(level):
     words = [f"simulator.{noise}.snr_db={level}" for noise in ("sensor_noise", "load_noise")]

@@ -88,6 +88,7 @@ def test_what_is_wrong_with_an_effect_is_said_at_once():
     assert "power_law_damping.exponent = 17.0: must lie within 0.2 … 5" in said
     assert "power_law_damping.as_printed = 'yes': must be one of False, True" in said
     assert "power_law_damping.coefficient = nan: must be a finite number in N" in said
+    assert "remedy: leave it out where it is not known" in said
     with pytest.raises(gd.InputError, match="must be finite numbers in m"):
         gd.ProfileError(amplitudes=["a"], phases=[0.0])
 

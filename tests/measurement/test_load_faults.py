@@ -125,7 +125,13 @@ def test_a_bad_entry_of_a_record_is_named(bench, key, value, said):
         ("polarity", 2, "must be one of 1, -1"),
         ("polarity", True, "must be one of 1, -1"),
         ("uncertainty", -0.1, "at least 0"),
-        ("uncertainty", float("nan"), "must be a finite number"),
+        (
+            "uncertainty",
+            float("nan"),
+            "must be a finite number; remedy: write a number: neither infinity nor nan is one",
+        ),
+        ("gain", "inf", "must be a finite number; remedy: write a number: neither infinity nor nan is one"),
+        ("range", {"value": float("inf"), "unit": "mm"}, "or leave range out where it is not known"),
         ("datum", "relative", "must be one of absolute, arbitrary"),
     ],
 )
@@ -145,6 +151,23 @@ def test_a_bad_word_about_a_sensor_is_named(bench, key, value, said):
         ("module", float("inf"), "= inf: must be a finite number, and needs a unit; remedy: write module: {value: …"),
         ("module", "nan mm", "must be a finite number, and needs a unit; remedy: write module: {value: …, unit: m}"),
         ("module", "-.inf", "must be a finite number"),
+        ("module", "-.inf", "; leave module out where it is not known"),
+        (
+            "module",
+            {"value": float("inf"), "unit": "mm"},
+            "value = inf: must be a finite number; remedy: write a finite",
+        ),
+        (
+            "damping_ratio",
+            float("inf"),
+            "must be a finite number; remedy: write a finite number, or leave damping_ratio",
+        ),
+        ("damping_ratio", {"value": float("nan")}, "write a finite number, or leave damping_ratio out"),
+        (
+            "damping_ratio",
+            "inf %",
+            "must be a finite number; remedy: write a finite number, or leave damping_ratio out",
+        ),
         ("backlash_gap", -1e-4, "= -0.0001: must not be negative"),
         ("module", {"value": 0, "unit": "mm"}, "must be positive"),
         ("n_teeth_pinion", 20.5, "whole number"),
