@@ -1,6 +1,7 @@
 """The readers: what each format gives, and how each says what is wrong."""
 
 import gzip
+import wave
 
 import numpy as np
 import pytest
@@ -226,6 +227,24 @@ def test_wav_integers_are_fractions_of_full_scale(tmp_path, dtype, stored, fract
     assert table.sampling_rate == 12800
     assert table.values(0).tolist() == fractions
     assert ("full scale" in table.notes[0]) == (dtype is not np.float32)
+
+
+@pytest.mark.parametrize("chunk", [b"", b"LIST\x03\x00\x00\x00abc\x00"])
+@pytest.mark.parametrize(("bytes_each", "largest"), [(1, 128), (2, 32768), (3, 8388608), (4, 2147483648)])
+def test_the_bits_of_a_wav_file_are_those_of_its_header(tmp_path, bytes_each, largest, chunk):
+    """Three bytes a sample are read in four."""
+    path = tmp_path / "a.wav"
+    with wave.open(str(path), "wb") as file:
+        file.setparams((1, bytes_each, 12800, 0, "NONE", ""))
+        middle = 128 if bytes_each == 1 else 0
+        file.writeframes(b"".join(one.to_bytes(bytes_each, "little") for one in [middle, middle + largest // 2]))
+    content = path.read_bytes()
+    size = (len(content) - 8 + len(chunk)).to_bytes(4, "little")
+    path.write_bytes(content[:4] + size + content[8:12] + chunk + content[12:])
+    table = read_table(path)
+    assert table.values(0).tolist() == [0, 0.5]
+    said = f"WAV holds integers of {8 * bytes_each} bits: divided by {largest}, so that full scale is 1"
+    assert table.notes == (said,)
 
 
 def test_a_wav_record_brings_its_rate_and_is_scaled_by_the_range(bench):
