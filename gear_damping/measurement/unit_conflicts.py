@@ -74,18 +74,33 @@ def _factor_unsaid(raw: RawChannel, said: str) -> Finding:
 
 
 def _name_conflict(raw: RawChannel, name: str, said: str, stated: Unit) -> Finding | None:
-    """The name of the column ends in a smaller or larger unit than that of the YAML, `x_um`."""
+    """The name of the column ends in a smaller or larger unit than that of the YAML, `x_um`, or in one of others."""
     named = unit_at_end(name)
     if named is None and gravity_at_end(name):
         return _may_be_gravity(raw, name, said, stated)
     own = None if named is None else of_a_shaft(parse_unit(named), stated)
-    if own is None or own.dimension != stated.dimension or abs(own.factor / stated.factor - 1) < SAME_UNIT:
+    if own is None:
+        return None
+    if own.dimension != stated.dimension:
+        return _named_otherwise(raw, name, named, said)
+    if abs(own.factor / stated.factor - 1) < SAME_UNIT:
         return None
     message = (
         f"column '{name}' is named like one in {named} and the YAML says '{said}', which was used; correct "
         "the one that is wrong, or write gain: 1 where it is the name"
     )
     return Finding("unit_conflict", message, channel=raw.plan.name)
+
+
+def _named_otherwise(raw: RawChannel, name: str, named: str, said: str) -> Finding | None:
+    """The name of the column ends in a unit of another kind than that of the YAML, `x_mV` of one in mm."""
+    if name.lower().endswith(said.lower()):
+        return None  # `x_nm` in nanometres
+    message = (
+        f"column '{name}' is named like one in {named} and the YAML says '{said}', a unit of another kind, which was "
+        f"used; write gain: what the column holds for one {said}, or gain: 1 where the name means something else"
+    )
+    return Finding("unit_conflict", message, channel=raw.plan.name, severity="note")
 
 
 def _may_be_gravity(raw: RawChannel, name: str, said: str, stated: Unit) -> Finding | None:

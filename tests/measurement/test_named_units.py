@@ -94,6 +94,35 @@ def test_names_that_mean_something_else_say_nothing(name, unit, tmp_path):
     assert [one for one in record.findings if one.kind == "unit_conflict"] == []
 
 
+@pytest.mark.parametrize(
+    ("name", "named", "unit"),
+    [
+        ("x_mV", "mV", "mm"),
+        ("pos_volts", "V", "m"),
+        ("force_kN", "kN", "mm"),
+        ("x_mm", "mm", "V"),
+        ("v_mm_s", "mm/s", "mm"),
+    ],
+)
+@pytest.mark.parametrize("by_place", [True, False])
+def test_a_unit_of_another_kind_in_the_name_of_a_channel_is_a_note(name, named, unit, by_place, tmp_path):
+    column = 1 if by_place else name
+    record = loaded(tmp_path, "t", "s", motion=name, of_motion=unit, more=column)
+    (found,) = [one for one in record.findings if one.kind == "unit_conflict"]
+    assert (found.severity, found.channel) == ("note", "displacement")
+    said = f"column '{name}' is named like one in {named} and the YAML says '{unit}', a unit of another kind, "
+    assert found.message.startswith(said)
+    for gain in (1, 0.05):
+        record = loaded(tmp_path, "t", "s", motion=name, of_motion=unit, more=f"{column}, gain: {gain}")
+        assert not record.findings
+
+
+@pytest.mark.parametrize(("name", "unit"), [("x_nm", "nm"), ("x_mV [mm]", "mm"), ("x_rad", "deg"), ("acc_mg", "mg")])
+def test_a_name_that_ends_in_the_unit_that_is_declared_is_no_other(name, unit, tmp_path):
+    record = loaded(tmp_path, "t", "s", motion=name, of_motion=unit)
+    assert "of another kind" not in str([one.message for one in record.findings])
+
+
 @pytest.mark.parametrize("name", ["a_g", "acc.g", "acc_g_x"])
 def test_a_g_behind_an_acceleration_may_be_one_and_is_a_note(name, tmp_path):
     """It may be the ground's or the gear's."""
