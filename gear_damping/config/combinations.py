@@ -7,6 +7,7 @@ import torch
 
 from gear_damping.config.acting import SIMULATED, Found, idle_keys
 from gear_damping.config.by_task import BY_TASK
+from gear_damping.config.decided import TORQUE, UNSAID, holds_unsaid
 from gear_damping.config.folders import unusable
 from gear_damping.config.light import wrong_measurement, wrong_name
 from gear_damping.config.overruled import OVERRULED, given_on_top
@@ -177,10 +178,10 @@ def _label(whole: Whole) -> Found:
 def _physics(whole: Whole) -> Found:
     simulator = whole.simulator
     value = {name: simulator.given.get(name, p.default) for name, p in simulator.model.parameters().items()}
-    if simulator.model.system.chosen.get("gear_torque_mode") == "held" and "gear_torque" not in simulator.given:
+    if holds_unsaid(simulator.model, simulator.given):
         balance = value["pinion_torque"] * value["n_teeth_gear"] / value["n_teeth_pinion"]
         remedy = f"simulator.gear_torque={balance:g} balances the torque on the pinion"
-        yield "simulator.gear_torque", "must be given where it is held", None, remedy
+        yield f"simulator.{TORQUE}", UNSAID, None, remedy
     for effect in (effect.name for effect in simulator.model.effects):
         low, high = value.get(f"{effect}.minimum"), value.get(f"{effect}.maximum")
         if low is not None and high is not None and low > high:

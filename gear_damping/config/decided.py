@@ -1,5 +1,6 @@
 """Values of a system that one of its options decides: what is refused on the command line, in a file and in Python."""
 
+from collections.abc import Container
 from dataclasses import dataclass
 
 from gear_damping.config.source import Origin, spellings
@@ -8,6 +9,8 @@ from gear_damping.physics.model import Model
 PRINTED = ("equivalent_mass", "inertia_pinion", "inertia_gear", "module", "pressure_angle")  # as_printed has its own
 ON_TEETH = "tooth_friction"  # the effect that takes lever arms from inertias, module and pressure angle
 MODE, HELD, BALANCED = "gear_torque_mode", "held", "balanced"
+TORQUE = "gear_torque"
+UNSAID = "must be given where it is held"  # the rule of such a torque
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,7 @@ def decided_by_options(model: Model, group: str = "") -> dict[str, Decided]:
     if chosen.get(MODE) == BALANCED:
         rule = f"has no effect where {group}{MODE} is {BALANCED}: it follows from the pinion's torque"
         instead = f"add {group}{MODE}={HELD}" if group else f"make the system with {MODE}='{HELD}'"
-        found["gear_torque"] = Decided(MODE, rule, f"leave it out, or {instead}")
+        found[TORQUE] = Decided(MODE, rule, f"leave it out, or {instead}")
     if chosen.get("as_printed"):
         is_read = chosen.get(MODE) == HELD or any(one.name == ON_TEETH for one in model.effects)
         beside = f"{group}as_printed={'true' if group else True}"
@@ -44,6 +47,16 @@ def decided_by_options(model: Model, group: str = "") -> dict[str, Decided]:
         printed = Decided("as_printed", rule, "leave one of them out")
         found |= dict.fromkeys(PRINTED[:1] if is_read else PRINTED, printed)
     return found
+
+
+def holds_unsaid(model: Model, given: Container[str]) -> bool:
+    """Whether the torque on the gear of a model is held, and nobody says at what.
+
+    Args:
+        model: The model.
+        given: Names of what is given.
+    """
+    return model.system.chosen.get(MODE) == HELD and TORQUE not in given
 
 
 def decided_in_one_file(model: Model, origin: Origin) -> dict[str, Decided]:

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from gear_damping.errors import InputError, Problem, with_article
 from gear_damping.interface.arguments import SEED, names, numbers
-from gear_damping.interface.model import refuse_decided
+from gear_damping.interface.model import refuse_decided, refuse_unsaid
 from gear_damping.physics.model import Model
 from gear_damping.schema.values import Problems
 from gear_damping.simulation.driven import Driven
@@ -50,7 +50,7 @@ def _rows(name: str, series: ArrayLike) -> torch.Tensor:
 
 
 def refuse_idle(model: Model, given: Mapping[str, Any], series: Collection[str]) -> None:
-    """Refuse what a call gives without effect, and what belongs to another argument.
+    """Refuse what a call gives without effect, what belongs to another argument, and a torque that nobody says.
 
     Args:
         model: What is simulated.
@@ -63,6 +63,8 @@ def refuse_idle(model: Model, given: Mapping[str, Any], series: Collection[str])
     problems = Problems(_of_another_argument(model, given))
     with problems.collecting():
         refuse_decided(model, given, series)
+    with problems.collecting():
+        refuse_unsaid(model, {*model.given, *given, *series})
     problems += _of_series(model, given, series)
     problems.raise_any()
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import yaml
 
-from gear_damping.config.decided import decided_by_options
+from gear_damping.config.decided import TORQUE, UNSAID, decided_by_options, holds_unsaid
 from gear_damping.config.simulator import SimulatorSettings, read_simulator
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
@@ -157,6 +157,21 @@ def refuse_decided(model: physics.Model, given: Mapping[str, Any], series: Colle
     ]
     if problems:
         raise InputError(problems)
+
+
+def refuse_unsaid(model: physics.Model, given: Collection[str]) -> None:
+    """Refuse to simulate a gear whose torque is held where nobody says at what: 0 would be no usual value.
+
+    Args:
+        model: The model.
+        given: Names of values and series.
+
+    Raises:
+        InputError: its torque is not given.
+    """
+    if holds_unsaid(model, given):
+        remedy = f"give {TORQUE}: n_teeth_gear / n_teeth_pinion times the torque on the pinion balances it"
+        raise InputError(Problem(TORQUE, UNSAID, remedy=remedy))
 
 
 class _Given(Origin):

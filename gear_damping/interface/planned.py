@@ -13,6 +13,7 @@ from gear_damping.identification.test_plan.repeated import Repeated, repeat
 from gear_damping.identification.test_plan.rig import Rig
 from gear_damping.interface import planned_page as page
 from gear_damping.interface.arguments import SEED, refuse_no_flag, refuse_other_kind, refuse_other_solver
+from gear_damping.interface.model import refuse_unsaid
 from gear_damping.interface.planned_arguments import Handed
 from gear_damping.physics.model import Model
 from gear_damping.reporting.figures.test_plan import test_plan_figure
@@ -134,6 +135,7 @@ def plan(
     """
     refuse_other_solver(solver)
     solver, handed = solver or Solver(), Handed(model)
+    refuse_unsaid(model, model.given)
     asked = Asked(
         handed.tests(tests),
         handed.sensors(sensors),

@@ -69,6 +69,20 @@ def test_a_torque_that_is_held_acts():
         assert not np.allclose(gd.simulate(held, **SAMPLED, **more).transmission_error, plain, rtol=1e-6, atol=0)
 
 
+def test_a_torque_that_is_held_has_to_be_said():
+    """It was taken for 0 without a word."""
+    rule = (
+        "- gear_torque: must be given where it is held; remedy: give gear_torque: n_teeth_gear / n_teeth_pinion times"
+    )
+    held = pair(gear_torque_mode="held")
+    assert rule in said_of(lambda: gd.simulate(held, **SAMPLED))
+    tests = gd.PlannedTests(durations=(0.02,), sampling_rate=20e3, speeds=(200.0,), torques=(100.0,))
+    sensor = gd.PlannedSensor("transmission_error", noise=1e-6)
+    assert rule in said_of(lambda: gd.plan(held, tests, sensor))
+    for more in ({"gear_torque": 0.0}, {"inputs": {"gear_torque": np.full(60, 300.0)}}):
+        assert len(gd.simulate(held, **SAMPLED, **more)) == 1
+
+
 def test_what_the_paper_prints_takes_the_place_of_a_module():
     said = said_of(lambda: pair(as_printed=True, module=0.004))
     assert "- module = 0.004: has no effect beside as_printed=True: mass and base circles are those that" in said
