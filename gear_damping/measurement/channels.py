@@ -337,7 +337,8 @@ class Motion(Response):
     )
     usual_frame: ClassVar[str] = "relative"
     frame: Annotated[str, OneOf(("absolute", "relative"))] = key(
-        "Beside a measured `base_acceleration`: relative to the base, or of an acceleration alone against the ground. "
+        "Beside a measured `base_acceleration` a_b: relative to the base, or of an acceleration alone against the "
+        "ground, x'' + a_b, both positive the same way. "
         "Absent, relative for displacement and velocity, absolute for acceleration.", "response",
     )  # fmt: skip
 

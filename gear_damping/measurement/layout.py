@@ -169,7 +169,11 @@ class OscillatorChannels(c.Timed):
     velocity: c.Velocity = key("Velocity.", "response")
     acceleration: c.Acceleration = key("Acceleration.", "response")
     force: c.Force = key("What drives it, in any unit; absent in a free decay.", "input")
-    base_acceleration: c.BaseAcceleration = key("Acceleration of the base that it stands on.", "input")
+    base_acceleration: c.BaseAcceleration = key(
+        "Acceleration a_b, against the ground, of the base that it stands on, positive in the direction in which the "
+        "motion x relative to the base is: x'' + c x' + k x = -a_b.",
+        "input",
+    )
 
 
 class Window(Declared):

@@ -68,9 +68,13 @@ class GearParameters(Declared):
         "Teeth of the pinion.", "known"
     )
     n_teeth_gear: Annotated[Quantity, Measured("1", whole=True, within=(5, 1000))] = key("Teeth of the gear.", "known")
-    module: Annotated[Quantity, Measured("m", uncertain=True, within=(1e-4, 0.1))] = key("Module of the teeth.", KNOWN)
+    module: Annotated[Quantity, Measured("m", uncertain=True, within=(1e-4, 0.1))] = key(
+        "Module of the teeth; of helical ones the transverse one, the normal one over cos(helix angle).", KNOWN
+    )
     pressure_angle: Annotated[Quantity, Measured("rad", uncertain=True, within=(0.1, 0.7))] = key(
-        "Pressure angle.", KNOWN
+        "Pressure angle; of helical teeth the transverse one, whose tangent is that of the normal one over "
+        "cos(helix angle).",
+        KNOWN,
     )
     inertia_pinion: Annotated[Quantity, Measured("kg*m^2", uncertain=True, within=(1e-9, 1e4))] = key(
         "Inertia of the pinion.", KNOWN
