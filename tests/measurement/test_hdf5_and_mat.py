@@ -1,5 +1,7 @@
 """Files that h5py and MATLAB wrote: HDF5, MAT with structures, and MAT 7.3."""
 
+import struct
+
 import h5py
 import numpy as np
 import pytest
@@ -221,6 +223,35 @@ def test_a_timeseries_object_is_said_with_what_to_do_in_matlab(mat73):
     assert not any(name.endswith("ts") or name.startswith("#") for name in table.names)
     with pytest.raises(InputError, match=r"ts \(MATLAB object; in MATLAB save its arrays, as t = ts.Time"):
         table.index("velocity", "column")
+
+
+def _element(kind, content):
+    return struct.pack("<II", kind, len(content)) + content + bytes(-len(content) % 8)
+
+
+def _object(name, kind):
+    """A variable of version 5 to 7 that is an object: its flags, name, system and class, and a handle."""
+    words = b"".join(_element(1, word) for word in (name, b"MCOS", kind))
+    sides, handle = _element(5, struct.pack("<2i", 6, 1)), _element(6, struct.pack("<6I", *range(6)))
+    inner = _element(6, struct.pack("<2I", 13, 0)) + sides + _element(1, b"") + handle
+    return _element(14, _element(6, struct.pack("<2I", 17, 0)) + words + _element(14, inner))
+
+
+@pytest.mark.parametrize(
+    ("kind", "remedy"),
+    [
+        ("timeseries", r"MATLAB object; in MATLAB save its arrays, as t = run\.Time; y = run\.Data"),
+        ("table", r"MATLAB object; in MATLAB write it as text, writetable\(run, 'data\.csv'\)"),
+        ("timetable", r"MATLAB object; in MATLAB write it as text, writetimetable\(run, 'data\.csv'\)"),
+    ],
+)
+def test_an_object_of_an_older_file_has_its_name_and_what_saves_it(kind, remedy, tmp_path):
+    """It was called None, and a table was to be saved like a time series."""
+    savemat(tmp_path / "a.mat", {})
+    with (tmp_path / "a.mat").open("ab") as file:
+        file.write(_object(b"run", kind.encode()))
+    with pytest.raises(InputError, match=rf"holds no array of real numbers, only run \({remedy}\); remedy: "):
+        read_table(tmp_path / "a.mat")
 
 
 def test_mat_7_3_too_large_or_cut_off_is_one_message(mat73):

@@ -39,10 +39,15 @@ DEADLY = True  # a damaged file may end the process
 
 _HDF5_MAGIC = b"\x89HDF"
 _COMPRESSED = 15  # the type of an element that is deflated
-_OBJECT = "MATLAB object; in MATLAB save its arrays, as t = ts.Time; y = ts.Data"
+_WRITERS = {"table": "writetable", "timetable": "writetimetable"}  # by the class of an object, what saves it as text
+_NAMELESS = "None"  # what scipy calls an object that is a variable of its own
 _FIELD = re.compile(r"^(?P<array>.+)\.(?P<field>\w+)\[(?P<element>\d+)\]$")  # of an element of an array of structures
 _STEP, _STEP_IN = ".x_values.increment", ".x_values.quantity.label"  # of the abscissa in files of Simcenter
 _NAME = re.compile(r"^(channel_?)?(name|label)$", re.I)  # the field that says what an element is
+
+
+class _Object(str):
+    """What is said of an object of MATLAB, whose arrays are not read."""
 
 
 def read(path: Path, max_bytes: int) -> Table:
@@ -116,7 +121,24 @@ def _read_older(path: Path, max_bytes: int) -> dict[str, Any]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", MatReadWarning)  # of what it cannot hold; what is missing is not listed
         content = loadmat(path, squeeze_me=True)
-    return {name: value for name, value in content.items() if not name.startswith("__")}
+    content = {name: value for name, value in content.items() if not name.startswith("__")}
+    if isinstance(one := content.get(_NAMELESS), MatlabOpaque):
+        del content[_NAMELESS]
+        content[_word(one["s0"])] = one
+    return content
+
+
+def _word(value: Any) -> str:
+    """The one word that a field of an object holds."""
+    word = np.ravel(value)[0]
+    return word.decode("utf-8", "replace") if isinstance(word, bytes) else str(word)
+
+
+def _said_of(kind: str, name: str) -> _Object:
+    """What is said of an object of a class, and how its numbers are saved in MATLAB."""
+    if kind in _WRITERS:
+        return _Object(f"MATLAB object; in MATLAB write it as text, {_WRITERS[kind]}({name}, 'data.csv')")
+    return _Object(f"MATLAB object; in MATLAB save its arrays, as t = {name}.Time; y = {name}.Data")
 
 
 def _unpacked_size(path: Path, limit: int) -> int:
@@ -158,13 +180,13 @@ def _tree(h5py: Any, group: Any) -> dict[str, Any]:
 
 def _read_hdf5(path: Path, max_bytes: int) -> dict[str, Any]:
     h5py, pymatreader = extra_library("h5py", path), extra_library("pymatreader", path)
-    sizes, objects = [], []
+    sizes, objects = [], {}
 
     def visit(name: str, item: Any) -> None:
         if isinstance(item, h5py.Dataset):
             sizes.append(item.size * item.dtype.itemsize if item.size else 0)
         if "MATLAB_object_decode" in item.attrs:
-            objects.append(name)
+            objects[name] = _word(item.attrs.get("MATLAB_class", b""))
 
     with h5py.File(path, "r") as file:
         file.visititems(visit)
@@ -177,13 +199,13 @@ def _read_hdf5(path: Path, max_bytes: int) -> dict[str, Any]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # of classes, which are left out here and said
         content = pymatreader.read_mat(path, variable_names=plain) if plain else {}
-    for place in objects:
+    for place, kind in objects.items():
         *parents, last = place.split("/")
         inner = content
         for parent in parents:
             inner = inner.get(parent) if isinstance(inner, dict) else None
         if isinstance(inner, dict):
-            inner[last] = _OBJECT
+            inner[last] = _said_of(kind, place.replace("/", "."))
     return {name: content[name] for name in names}
 
 
@@ -192,8 +214,12 @@ def _flat(value: Any, name: str) -> Iterator[tuple[str, NDArray | str]]:
     if isinstance(value, dict):
         for key, inner in value.items():
             yield from _flat(inner, f"{name}.{key}" if name else key)
-    elif isinstance(value, MatlabOpaque | MatlabFunction) or (isinstance(value, str) and value == _OBJECT):
-        yield name, _OBJECT
+    elif isinstance(value, MatlabOpaque):
+        yield name, _said_of(_word(value["s2"]), name)
+    elif isinstance(value, _Object):
+        yield name, value
+    elif isinstance(value, MatlabFunction):
+        yield name, "MATLAB function"
     elif isinstance(value, np.ndarray) and value.dtype.names:
         for field in value.dtype.names:
             yield from _flat(value[field], f"{name}.{field}")
