@@ -190,6 +190,30 @@ def test_mat_that_unpacks_to_too_much_is_refused(tmp_path):
         read_table(tmp_path / "a.mat", max_bytes=10_000)
 
 
+@pytest.mark.parametrize(
+    ("suffix", "remedy"),
+    [
+        (
+            "parquet",
+            "write it as CSV, in Python pandas.read_parquet('a.parquet').to_csv('a.csv', index=False); a format",
+        ),
+        (
+            "feather",
+            "write it as CSV, in Python pandas.read_feather('a.feather').to_csv('a.csv', index=False); a format",
+        ),
+        ("ods", "save it as an Excel workbook (.xlsx) or as CSV in the spreadsheet; a format of your own"),
+        ("mf4", "export its channels as CSV or MAT from the program that made it; a format of your own"),
+    ],
+)
+def test_a_format_that_is_no_text_is_told_how_it_is_brought_into_one_that_is_read(tmp_path, suffix, remedy):
+    """They were to be named .txt where they are tables in text."""
+    (tmp_path / f"a.{suffix}").write_bytes(b"PAR1")
+    with pytest.raises(InputError) as said:
+        read_table(tmp_path / f"a.{suffix}")
+    (problem,) = said.value.problems
+    assert problem.remedy.startswith(remedy)
+
+
 @pytest.mark.parametrize("suffix", ["npz", "mat", "wav", "h5", "tdms", "xlsx", "gz"])
 def test_garbage_is_one_error_that_names_the_file(tmp_path, suffix):
     path = tmp_path / f"a.{suffix}"

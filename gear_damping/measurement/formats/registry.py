@@ -24,6 +24,15 @@ from gear_damping.own_files import REMEDY, classes_of, errors_in, load_module, m
 
 MAX_BYTES = 512 * 1024**2  # of a file: as text and as floats it is several times that in memory
 KEY = "measurement.plugins"
+# Formats that are not read, and how what is in them is brought into one that is.
+BROUGHT = {
+    **dict.fromkeys((".ods", ".xlsb"), "save it as an Excel workbook (.xlsx) or as CSV in the spreadsheet"),
+    ".parquet": "write it as CSV, in Python pandas.read_parquet('{0}').to_csv('{1}.csv', index=False)",
+    ".feather": "write it as CSV, in Python pandas.read_feather('{0}').to_csv('{1}.csv', index=False)",
+    **dict.fromkeys(
+        (".mf4", ".mdf", ".c3d", ".tdm"), "export its channels as CSV or MAT from the program that made it"
+    ),
+}
 Reader = Callable[[Path, int], Table]
 PATIENCE, SLOWEST = 30.0, 2e6  # s that any file may take, and more of them for bytes of the slowest disk, bytes/s
 FIRST_LOOK, LAST_LOOK = 5e-4, 0.05  # s between two looks at the copy, longer each time
@@ -102,8 +111,9 @@ def read_table(path: Path, max_bytes: int = MAX_BYTES, known: Mapping[str, Reade
     """
     suffix, known = path.suffix.lower(), builtin_readers() if known is None else known
     if suffix not in known:
-        remedy = "add .txt to its name where it is a table in text, or "
-        remedy += f"save it as one of {', '.join(sorted(known))}; a format of your own: {KEY}=[its file]"
+        usual = f"add .txt to its name where it is a table in text, or save it as one of {', '.join(sorted(known))}"
+        brought = BROUGHT.get(suffix, "").format(path.name, path.stem)
+        remedy = f"{brought or usual}; a format of your own: {KEY}=[its file]"
         raise InputError(Problem("file", f"unknown format '{suffix}'", str(path), remedy))
     with reading(path), path.open("rb") as file:
         size = os.fstat(file.fileno()).st_size
