@@ -50,6 +50,20 @@ def test_frames_have_the_rate_below_their_title(title, beside, rate, tmp_path):
     assert found.stated_rate == (rate and (title, rate))
 
 
+@pytest.mark.parametrize("ends", ["\n", "\r\n"])
+def test_several_tables_of_frames_are_refused_by_their_titles(ends, tmp_path):
+    """The second one was told as rows with too few cells."""
+    rows = "".join(f"{k + 1},0,{x:.6f},{x * x:.6f}\n" for k, x in enumerate(MOTION))
+    text = f"Devices\n1000\n,,Plate,\nFrame,Sub Frame,Fx,Fy\n,,N,N\n{rows}"
+    assert written(tmp_path, text.replace("\n", ends)).stated_rate == ("Devices", RATE)
+    text += f"\nTrajectories\n100\n,,Ped:M1,\nFrame,Sub Frame,X,Y\n,,mm,mm\n{rows}"
+    with pytest.raises(
+        InputError, match=r"holds 2 tables one below .*: Devices, Trajectories; remedy: put each"
+    ) as said:
+        written(tmp_path, text.replace("\n", ends))
+    assert len(said.value.problems) == 1
+
+
 @pytest.mark.parametrize(("label", "rate"), [("s", RATE), ("m", None)])
 def test_a_number_in_the_name_of_a_signal_is_not_its_step(label, rate, tmp_path):
     steps = {"start_value": 0.0, "increment": 1e-3, "number_of_values": 302.0, "quantity": {"label": label}}

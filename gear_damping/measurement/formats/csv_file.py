@@ -27,6 +27,7 @@ from gear_damping.measurement.formats.cells import (
     without_lone_rows,
 )
 from gear_damping.measurement.formats.console_text import refuse_what_is_shown
+from gear_damping.measurement.formats.frame_tables import refuse_several_tables
 from gear_damping.measurement.formats.header import Header
 from gear_damping.measurement.formats.number_texts import is_number, is_written, parts_thousands
 from gear_damping.measurement.formats.octave_text import octave_table
@@ -59,6 +60,7 @@ def read(path: Path, max_bytes: int) -> Table:
         return series
     text = Text(path, content)
     refuse_what_is_shown(str(path), text.utf8[:_SEEN].decode("utf-8", "replace").splitlines()[:HEAD])
+    refuse_several_tables(text)
     header, first_line = text_header(text)
     scope = of_oscilloscope([row for _, row in islice(text.rows(), 2)])
     header = header if scope is None else replace(header, names=scope[0], units=scope[1], skipped=0)
