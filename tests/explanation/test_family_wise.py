@@ -167,6 +167,18 @@ def test_whitened_rows_are_white_and_of_the_variance_of_the_innovations():
     assert abs(lagged) < 0.05
 
 
+@pytest.mark.parametrize("columns", [1, 70])
+def test_columns_of_many_rows_are_whitened_as_their_law_says(columns):
+    rng = np.random.default_rng(36)
+    signals = rng.normal(size=(2, 700, columns)).cumsum(1)
+    law = Autoregression(torch.as_tensor(np.array([0.6, 0.2])), 1.0, torch.as_tensor(np.array([0.1, 0.05])))
+    law_of_lags = [1, -0.6, -0.2, -0.05, -0.05, *[-0.0125] * 4]
+    filtered = signal.lfilter(law_of_lags, [1.0], signals, axis=1)
+    white = law.whitened_columns(torch.as_tensor(signals)).numpy()
+    np.testing.assert_allclose(white[:, 8:], filtered[:, 8:], atol=1e-9)
+    assert not white[:, :8].any()
+
+
 def test_degrees_that_a_regression_took_are_given_back():
     rng = np.random.default_rng(32)
     values, taken = rng.normal(size=600), np.linalg.qr(rng.normal(size=(600, 120)))[0]

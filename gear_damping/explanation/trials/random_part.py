@@ -190,7 +190,7 @@ class Whitener:
         found = torch.zeros_like(rows)
         for number, law in enumerate(self.random.laws):
             places = (self.random.groups.reshape(-1) == number).nonzero().flatten()
-            white = law.whitened(rows[places].transpose(1, 2).contiguous()).transpose(1, 2)
+            white = law.whitened_columns(rows[places])
             found[places] = white * self.problem.noise / max(law.innovation, 1e-300) ** 0.5
         return (found * self.used.unsqueeze(-1)).reshape(signal.shape)
 
