@@ -85,6 +85,17 @@ def test_beside_a_rest_a_cause_of_any_size_is_none(unknown, word):
     assert ("but not one figure of `coulomb_friction` is told" in said.sentences[0]) == bool(unknown)
 
 
+@pytest.mark.parametrize(("left", "word"), [(0.6, UNEXPLAINED), (0.01, EXPLAINED)])
+def test_beside_a_rest_a_cause_of_another_size_in_every_record_is_none(left, word):
+    """A contact that grows with the load by a law of its own took errors of the profile of 0 to 3 times their size."""
+    found = search(accepted=(cause(),), left=left > 0.1, sensor=200.0, rest=40.0, not_random=0.1)
+    said = verdict(
+        found, MUCH, excess_of(left, 20.0 if left > 0.1 else 1.05), is_one=True, scattered="coulomb_friction"
+    )
+    assert said.word == word
+    assert ("but not one figure of `coulomb_friction` is told" in said.sentences[0]) == (word == UNEXPLAINED)
+
+
 @pytest.mark.parametrize(("unknown", "word"), [("hysteretic_damping", UNEXPLAINED), ("", EXPLAINED)])
 def test_a_cause_of_any_size_explains_nothing(unknown, word):
     """Half a swing of an arm took a cubic spring of -242 to 36 and a hysteresis of 0 to 10 for .17 %."""

@@ -78,6 +78,31 @@ def test_a_size_that_moves_nothing_bends_to_nothing(moved, expected, monkeypatch
     assert without_a_figure(outcome, ["backlash"], SimpleNamespace(noise=NOISE)) == expected
 
 
+def outcome_of(parameters):
+    sensitivity = torch.full((1, 1, 4, len(parameters)), 1e3 * NOISE, dtype=torch.float64)
+    prediction = SimpleNamespace(sensitivity=sensitivity)
+    fitted = SimpleNamespace(shared=torch.zeros(len(parameters)).double(), prediction=prediction)
+    return SimpleNamespace(problem=SimpleNamespace(free=parameters), fitted=fitted)
+
+
+@pytest.mark.parametrize(("phases", "expected"), [((), ""), (("profile_error.phases[0]",), "profile_error")])
+def test_from_where_an_angle_counts_is_no_size(phases, expected, monkeypatch):
+    size, angle = FreeParameter("profile_error.amplitudes[0]", 1e-8), FreeParameter("profile_error.phases[0]", 1.5)
+    covariances = torch.diag(torch.tensor([1.0, 0.1], dtype=torch.float64))
+    monkeypatch.setattr("gear_damping.explanation.trials.told_size.covariance_of", lambda *_: covariances)
+    evidence = SimpleNamespace(noise=NOISE)
+    assert without_a_figure(outcome_of([size, angle]), ["profile_error"], evidence, phases) == expected
+
+
+@pytest.mark.parametrize(("scatter", "expected"), [(1.0, ""), (1e4, "profile_error")])
+def test_a_figure_is_known_as_well_as_it_is_said_to_be(scatter, expected, monkeypatch):
+    size = FreeParameter("profile_error.amplitudes[0]", 1.0)
+    covariances = torch.full((1, 1), 0.04, dtype=torch.float64)
+    monkeypatch.setattr("gear_damping.explanation.trials.told_size.covariance_of", lambda *_: covariances)
+    evidence, known = SimpleNamespace(noise=NOISE), lambda found, _: scatter * found
+    assert without_a_figure(outcome_of([size]), ["profile_error"], evidence, known=known) == expected
+
+
 def test_what_the_viscous_damping_does_already_is_told_of_no_other_law():
     extra = ("asymmetric_friction.damping_forward", "asymmetric_friction.damping_backward")
     assert not told(0.0, extra)

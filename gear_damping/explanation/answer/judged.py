@@ -17,7 +17,9 @@ from gear_damping.explanation.answer.stand_in import (
 )
 from gear_damping.explanation.evidence.excess import excess
 from gear_damping.explanation.model.contradicted import contradicts_stated
+from gear_damping.explanation.model.covariance import wider_of_both
 from gear_damping.explanation.model.homogeneity import homogeneity
+from gear_damping.explanation.model.own_phases import own_levels
 from gear_damping.explanation.model.positive import positive
 from gear_damping.explanation.state import State
 from gear_damping.explanation.statistics.paired import Share, share_taken
@@ -108,7 +110,7 @@ def _judged(found: Confirmed, notes: Sequence[str], is_short: bool) -> tuple[Jud
     state, before, after = found.state, found.before, found.after
     evidence, settings, budget = state.bench.evidence, state.bench.settings, state.bench.budget
     doubtful, stands_in = _doubtful(state)
-    unknown = without_a_figure(state.outcome, [cause.name for cause in state.accepted], evidence)
+    unknown, scattered = _of_no_figure(state)
     not_tried = tuple(budget.not_tried)
     fitted, beyond = (
         excess(state.nominal.fit_residuals, evidence.fitted, noise, settings)
@@ -128,6 +130,7 @@ def _judged(found: Confirmed, notes: Sequence[str], is_short: bool) -> tuple[Jud
         not_random=_not_random(state),
         is_short=is_short,
         any_figures=unknown,
+        scattered=scattered,
         is_stated_otherwise=bool(contradicts_stated(state.nominal, evidence)),
         predicts_worse=bool(state.accepted) and found.is_opened and share_of_held_out(state).interval95[1] < 0,
     )
@@ -138,9 +141,20 @@ def _judged(found: Confirmed, notes: Sequence[str], is_short: bool) -> tuple[Jud
         state, after = replace(state, accepted=(), outcome=state.nominal, left=state.seen), before
     differs = said_of_levels(state.outcome, evidence) if state.accepted else []
     said = said.saying(left, *differs, *notes, *acting, *inputs_and_loads(state), budget.sentence)
-    if unknown and not doubtful:
-        doubtful, stands_in = unknown, BENDS
+    if (unknown or scattered) and not doubtful:
+        doubtful, stands_in = unknown or scattered, BENDS
     return Judged(state, before, after, said, not_tried, found.t), (doubtful, stands_in)
+
+
+def _of_no_figure(state: State) -> tuple[str, str]:
+    """A cause of which not one size is known within itself, by the noise and by the scatter between records."""
+    outcome, evidence = state.outcome, state.bench.evidence
+    names = [cause.name for cause in state.accepted]
+    phases = {name for cause in state.accepted for name in cause.candidate.names_of_phases}
+    unknown = without_a_figure(outcome, names, evidence, phases)
+    if unknown or not names or own_levels(outcome):  # where a cause says that records differ, they need not agree
+        return unknown, unknown
+    return "", without_a_figure(outcome, names, evidence, phases, wider_of_both)
 
 
 def _not_random(state: State) -> float:

@@ -79,6 +79,13 @@ class Candidate:
         return self.hypothesis.effects[-1].cause.turns_with == "tooth"
 
     @property
+    def names_of_phases(self) -> set[str]:
+        """Names of its angles, which count from anywhere and are no sizes."""
+        common = {self.hypothesis.common[place].name for place in self.phases.values()}
+        own = set() if self.own_levels else set(self.own_phases.values())
+        return (common | own | {self.own_tooth}) - {""}
+
+    @property
     def is_law(self) -> bool:
         """Whether it is a law of the restoring or of the damping force."""
         return isinstance(self.hypothesis.effects[-1], ElasticForce | DampingForce)

@@ -87,6 +87,7 @@ class Known:
         not_random: What of the nominal model's residuals shows that it is not random, in % of the fitted records'
             variance.
         any_figures: A cause of which not one figure is known within itself; empty where none is such.
+        scattered: The same, where how far records scatter counts too: beside a rest every record may bend it otherwise.
         is_stated_otherwise: Whether the nominal model has figures far from what is stated of them.
         is_short: Whether held-out records are too short to judge more than what is missing of the power in them.
         predicts_worse: Whether held-out records are predicted clearly worse with the causes than without them.
@@ -105,6 +106,7 @@ class Known:
     not_random: float = inf
     is_short: bool = False
     any_figures: str = ""
+    scattered: str = ""
     is_stated_otherwise: bool = False
     predicts_worse: bool = False
 
@@ -144,7 +146,8 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         left = f"An unexplained residual of {after.percent:.3g} % has none." if after.percent > 0 else WITHIN_NOISE
         return Verdict(PARTLY, (f"{missing}. Part of it has a name: {said}. {left}", *further))
     if not explains_all:
-        why = ANY_FIGURES.format(known.any_figures) if known.any_figures else TOO_MUCH
+        unknown = known.any_figures or known.scattered
+        why = ANY_FIGURES.format(unknown) if unknown else TOO_MUCH
         return _not_established(found, before, known, OTHER_SIZES if known.is_one is False else why)
     if known.any_figures:
         return _not_established(found, before, known, NO_FIGURE.format(known.any_figures))
@@ -225,7 +228,12 @@ def _is_part_named(found: State, share: float, after: Excess, known: Known) -> b
     What has another size in other records, or any size, or has run into the end of what it can be, stands in for
     something else, however much it takes.
     """
-    if known.is_one is False or known.any_figures or any(found.is_at_bound(cause) for cause in found.accepted):
+    if (
+        known.is_one is False
+        or known.any_figures
+        or known.scattered
+        or any(found.is_at_bound(cause) for cause in found.accepted)
+    ):
         return False
     settings = found.bench.settings
     nobody_knows = known.is_one is None and known.of_fit >= settings.taken_by_all  # but nearly all of one record

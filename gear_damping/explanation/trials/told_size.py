@@ -3,7 +3,7 @@
 A law that bends to what another leaves may lower the cost while its own size is anybody's guess.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
 
 import torch
 from scipy.stats import chi2
@@ -14,6 +14,7 @@ from gear_damping.explanation.model.covariance import CORRELATED_PERIODS, SILENT
 from gear_damping.explanation.model.hypothesis import Outcome, time_scale
 from gear_damping.explanation.trials.refit import Refit
 from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
+from gear_damping.identification.output_error.records import SEPARATOR
 from gear_damping.identification.output_error.uncertainty import QUANTILE, long_run
 
 WITHIN = 1.0  # of a logarithm: the half of its 95 % interval, beyond which no size is known
@@ -60,23 +61,37 @@ def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
     return max(_statistic(outcome, column, lags) for column in alone) > limit
 
 
-def without_a_figure(outcome: Outcome, names: Sequence[str], evidence: Evidence) -> str:
+def without_a_figure(
+    outcome: Outcome,
+    names: Sequence[str],
+    evidence: Evidence,
+    phases: Collection[str] = (),
+    known: Callable[[Tensor, Outcome], Tensor] = lambda covariances, _: covariances,
+) -> str:
     """The first of several causes that has figures and not one of them known within itself; empty where none has.
 
     It bends to any motion. What a figure does not move any more (a gap whose far flank is never touched) bends to none:
     flanks part, however wide it is.
+
+    Args:
+        outcome: The model with the causes.
+        names: The causes.
+        evidence: The records.
+        phases: Names of what is no size: from where an angle counts is anybody's choice.
+        known: How well coordinates are known, from their covariance by the noise.
     """
     if not names:
         return ""
     free, shared = outcome.problem.free, outcome.fitted.shared
-    half = QUANTILE * covariance_of(outcome, evidence).diagonal().clamp(min=0).sqrt()
+    half = QUANTILE * known(covariance_of(outcome, evidence), outcome).diagonal().clamp(min=0).sqrt()
 
     def is_known(i: int) -> bool:
         within = WITHIN if free[i].logarithmic else abs(float(free[i].value(shared[i]))) / free[i].scale
         return float(half[i]) < within
 
     moves = _moving(outcome, evidence)
-    own = {name: [i for i, p in enumerate(free) if p.name.startswith(f"{name}.") and moves[i]] for name in names}
+    sizes = [i for i, p in enumerate(free) if moves[i] and p.name.partition(SEPARATOR)[0] not in phases]
+    own = {name: [i for i in sizes if free[i].name.startswith(f"{name}.")] for name in names}
     return next((name for name, places in own.items() if places and not any(map(is_known, places))), "")
 
 
