@@ -8,7 +8,12 @@ from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.each_alone import followed_one_by_one
 from gear_damping.explanation.steps.faint import faint_cause
-from gear_damping.explanation.steps.pairs import with_pair, with_pair_instead, with_pair_of_as_many
+from gear_damping.explanation.steps.pairs import (
+    with_pair,
+    with_pair_instead,
+    with_pair_of_a_nearer,
+    with_pair_of_as_many,
+)
 from gear_damping.explanation.steps.revise import beside_the_others, exchanged, pruned, simplified
 from gear_damping.explanation.steps.single import cause_of_records, differing_instead, single_cause
 from gear_damping.explanation.steps.told import told
@@ -95,6 +100,8 @@ def _with_more(state: State) -> tuple[State, bool]:
         state, best, rivals = _of_records_instead(*faint_cause(state))
         further = with_pair_of_as_many(state) if best is None else state.accepting(best, rivals)
         return (state, False) if further is None else (further, True)
+    if (instead := with_pair_of_a_nearer(state)) is not None:
+        return instead, True
     state, best, rivals = _of_records_instead(*single_cause(state))
     if best is None:
         further = with_pair(state) or cause_of_records(state)
