@@ -1,6 +1,7 @@
 """Which pair of effects is taken, on made-up fits: inside the bounds before outside, then the smaller of equals."""
 
 from dataclasses import replace
+from math import inf
 from types import SimpleNamespace
 from unittest.mock import patch
 
@@ -13,7 +14,7 @@ from gear_damping.explanation.steps import pairs as steps
 from gear_damping.explanation.steps.pairs import Pair, _accepted
 from gear_damping.explanation.trials.bench import Bench
 from gear_damping.explanation.trials.refit import Refit
-from tests.explanation.decisions.made_up import bench, left, outcome
+from tests.explanation.decisions.made_up import NAMES, bench, fit, left, outcome, scored
 
 BOUNDS = {"a.force": (0.0, 100.0), "a.width": (0.02, 0.5), "b.share": (-1.0, 1.0)}
 MIDDLE = {"a.force": 10.0, "a.width": 0.1, "b.share": 0.3}
@@ -117,3 +118,36 @@ def test_a_pair_is_told_where_both_of_its_effects_are(first, second, finite):
     with patch.object(steps, "is_told", lambda outcome, fit, evidence: sizes[fit.name]):
         state = State(bench(SearchSettings()), outcome(), outcome())
         assert steps._is_told(made, state) is (first and second and finite)
+
+
+@pytest.mark.parametrize(
+    ("cost", "parameters", "causes", "is_asked"),
+    [
+        (0.3, 3, 1, True),  # a stiffness that turns, beside which another effect is missing
+        (0.6, 3, 1, False),  # it fits no better
+        (0.3, 4, 1, False),  # with more parameters anything does
+        (0.3, 3, 2, False),
+        (0.3, 3, 0, False),
+    ],
+)
+def test_a_pair_is_asked_for_with_what_fits_better_than_the_one_cause(cost, parameters, causes, is_asked):
+    """What predicts the left-out records best may be neither of two that are missing."""
+    first, other = fit(NAMES[0], cost=0.5), fit(NAMES[1], cost=cost)
+    first.outcome.hypothesis, other.outcome.hypothesis = (SimpleNamespace(free=[None] * n) for n in (3, parameters))
+    accepted, asked = (SimpleNamespace(name=NAMES[0]), SimpleNamespace(name=NAMES[2]))[:causes], []
+    known = bench(SearchSettings(), [(first.outcome, left(10.0))])
+    state = State(known, outcome(), first.outcome, accepted, (scored(3, 0.2),), first_fits=(first, other))
+    with patch.object(steps, "_seconds", lambda base, _, promised: asked.append((base, promised)) or []):
+        assert steps.with_pair_of_a_nearer(state) is None
+    assert asked == ([(other, 0.5 * 0.8)] if is_asked else [])
+
+
+@pytest.mark.parametrize(("promised", "fitted"), [(inf, 3), (0.41, 2), (0.21, 1), (0.15, 0)])
+def test_beside_a_nearer_cause_only_what_promises_to_leave_less_is_fitted(promised, fitted):
+    """The base leaves 1, and of three effects two promise to take .8 and .75 of it, the third .3."""
+    plain = SimpleNamespace(cause=SimpleNamespace(simpler=None))
+    state = State(bench(SearchSettings(), library=dict.fromkeys(NAMES, plain)), outcome(), outcome())
+    ranked = [scored(place, gain) for place, gain in enumerate((0.8, 0.75, 0.3))]
+    kind = type(state.bench)
+    with patch.object(kind, "ranked", lambda *_: ranked), patch.object(kind, "full_fit", lambda *_: fit(cost=0.1)):
+        assert len(steps._seconds(fit(cost=1.0), state, promised)) == fitted

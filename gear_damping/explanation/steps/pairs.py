@@ -62,9 +62,9 @@ def with_pair_of_a_nearer(state: State) -> State | None:
     missing too, and was followed by two more that were not. Beside the nearer one the next effect must promise to leave
     less than any beside the cause that was accepted.
     """
-    bench, most = state.bench, len(state.outcome.hypothesis.free)
     if len(state.accepted) != 1 or not state.ranked:
         return None
+    bench, most = state.bench, len(state.outcome.hypothesis.free)
     fits = [fit for fit in state.first_fits if fit.is_seen_in_fit and len(fit.outcome.hypothesis.free) <= most]
     nearer = [fit for fit in _bases(fits, state) if fit.outcome.fitted.cost < state.outcome.fitted.cost]
     if not nearer or bench.budget.refuses(PAIRS):
