@@ -10,7 +10,9 @@ import torch
 from gear_damping.explanation.evidence.input_noise import error_of_load, expected_load, without_input_noise
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.steps import calibrate
-from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.observation import Known
+from gear_damping.identification.output_error.records import FitRecord, Observed
+from gear_damping.identification.output_error.segments import Segments
 from gear_damping.physics.systems.traits import Trait
 
 SAMPLES, RATE, NOISE = 2000, 200.0, 0.1
@@ -24,17 +26,24 @@ def load(stamps):
     return np.cos(2 * np.pi * np.multiply.outer(stamps / RATE, lines) + phases).sum(1)
 
 
+def warped(samples, drift):
+    """Instants in mean intervals of a clock whose rate falls from so much too fast to so much too slow."""
+    place = np.linspace(0, 1, samples)
+    return (samples - 1) * (place - 2 * drift * place * (1 - place))
+
+
 def record(series, held=(), stamps=None):
     response = torch.as_tensor(RANDOM.normal(size=SAMPLES))
     return FitRecord("run", response, RATE, {"force": torch.as_tensor(series)}, held=held, stamps=stamps)
 
 
-@pytest.mark.parametrize("jitter", [0.0, 0.07])
-def test_most_of_the_noise_goes_and_the_load_stays(jitter):
-    stamps = np.arange(SAMPLES) + jitter * RANDOM.uniform(-1, 1, SAMPLES)
-    true = load(stamps)
+@pytest.mark.parametrize("drift", [0.0, 0.05])
+def test_most_of_the_noise_goes_and_the_load_stays(drift):
+    """However uneven the stamps of the samples are: a load is known at even instants."""
+    true = load(np.arange(SAMPLES))
+    stamps = torch.as_tensor(warped(SAMPLES, drift)) if drift else None
     measured = true + NOISE * RANDOM.normal(size=SAMPLES)
-    (found,) = without_input_noise([record(measured, stamps=torch.as_tensor(stamps) if jitter else None)])
+    (found,) = without_input_noise([record(measured, stamps=stamps)])
     error = found.inputs["force"].numpy() - true
     assert np.std(error) < 0.55 * NOISE  # 12 lines of 5 each and their feet, of 1000
     assert abs(np.dot(error, true)) / np.dot(true, true) < 0.005  # and no share of the load is lost
@@ -138,3 +147,35 @@ def test_a_model_that_runs_away_is_compared_with_none(loud, quiet, is_quiet, mon
     monkeypatch.setattr(calibrate, "moves_with_noise", lambda *_: pytest.fail("compared"))
     found = calibrate.NOMINAL[Trait.REST](measured, None)
     assert (found.evidence is cleaned) == is_quiet
+
+
+def test_a_driven_rig_is_calibrated_at_uneven_stamps_in_segments_as_at_even_ones():
+    """A drive whose clock slows down: each segment is driven by the load of its own time."""
+    rate, gain, damping, size = 200.0, 30.0, 5.0, 4000
+    random, even = np.random.default_rng(11), np.arange(size)
+    stamps = warped(size, 0.05)
+    lines, phases = np.linspace(0.31, 6.3, 9), np.linspace(0, 40, 9)
+
+    def waves(at, answer):
+        angle = 2 * np.pi * np.multiply.outer(at / rate, lines) + phases
+        return np.real(np.exp(1j * angle) @ answer)
+
+    velocity = waves(stamps, gain / (damping + 2j * np.pi * lines)) + 0.02 * random.normal(size=size)
+    force = waves(even, np.ones(9)) + NOISE * random.normal(size=size)
+    measured = FitRecord(
+        "run", torch.as_tensor(velocity), rate, {"force": torch.as_tensor(force)}, observed=Observed("velocity"),
+        stamps=torch.as_tensor(stamps),
+    )  # fmt: skip
+    evidence = Evidence(
+        "oscillator",
+        (measured,),
+        (),
+        Known({"stiffness": 0.0}, {}),
+        None,
+        one_record=True,
+        noise=0.02,
+        segments=Segments(2.0),
+    )
+    found = calibrate.calibrated(evidence, None).nominal
+    assert found.values["viscous_damping.damping_coefficient"] == pytest.approx(damping, rel=0.02)
+    assert found.values["force_gain"] == pytest.approx(gain, rel=0.02)

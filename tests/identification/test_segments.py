@@ -69,6 +69,20 @@ def test_segments_hold_every_sample_once_and_say_when_they_begin():
         assert torch.equal(found, record.response)
 
 
+def test_a_segment_of_uneven_samples_is_driven_by_the_load_of_its_own_time():
+    """Of a clock that slows down: in the middle its samples are 25 ahead of the even grid."""
+    place = torch.linspace(0, 1, 1001, dtype=torch.float64)
+    stamps, even = 1000 * (place - 0.1 * place * (1 - place)), torch.arange(1001, dtype=torch.float64)
+    whole = FitRecord("a", stamps, 100.0, {"force": 7 + 3 * even}, stamps=stamps)
+    segmented = in_segments([whole], Segments(2.0))
+    assert len(segmented) == 5
+    for segment in segmented:
+        assert segment.begins * 100 + segment.instants == pytest.approx(segment.response, abs=1e-9)
+        inside = segment.instants <= len(segment.response) - 1  # what lies behind the grid does not count
+        assert segment.at_samples("force")[inside] == pytest.approx((7 + 3 * segment.response)[inside], abs=1e-9)
+        assert inside.double().mean() > 0.9
+
+
 def test_stated_segments_are_exact_and_a_shorter_end_is_left_out():
     record, segments = FitRecord("a", torch.arange(103.0), 100.0), Segments(0.25, exact=True)
     segmented = in_segments([record], segments)

@@ -83,10 +83,10 @@ def _features(record: FitRecord, outcome: Outcome, evidence: Evidence) -> dict[s
         found["mesh_phase_and_state"] = np.concatenate(
             [_waves(shaft.angle * shaft.teeth[0], 2) * place[:, None], _waves(shaft.angle * shaft.teeth[0], 2)], 1
         )
-    for name, series in record.inputs.items():
-        if name == "force":
-            values = series.numpy() / (series.std().item() or 1.0)
-            found["input"] = np.stack([values, values**2, values**3, np.gradient(values)], 1)
+    if "force" in record.inputs:
+        series = record.at_samples("force")
+        values = series.numpy() / (series.std().item() or 1.0)
+        found["input"] = np.stack([values, values**2, values**3, np.gradient(values)], 1)
     return found
 
 

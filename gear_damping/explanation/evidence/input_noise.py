@@ -12,7 +12,6 @@ from math import inf
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from scipy.interpolate import make_interp_spline
 from scipy.ndimage import uniform_filter1d
 from scipy.stats import chi2
 
@@ -26,7 +25,6 @@ ANGLE = "pinion_angle"  # an input that is no load
 LINES = 5  # of the spectrum that its power is averaged over
 WIDER, SCALES = 4, 6  # the content of a torque may be so many times as wide, so often: a weak one shows over many lines
 JUMP = 4.0  # standard deviations of noise, which it makes of end and start once in 16 000 records
-DEGREE = 5  # of the spline between uneven samples
 LEAST = 1e-6  # of a load's variance: a floor below is rounding
 FEWEST_SAMPLES = 64  # of a record: fewer tell no floor of its spectrum
 
@@ -52,28 +50,23 @@ def _cleaned(record: FitRecord, is_torque: bool) -> FitRecord:
     for name, series in ((name, one) for name, one in record.inputs.items() if name != ANGLE):
         variance, floor = float(series.var()), floor_variance(replace(record, response=series))
         if name not in record.held and LEAST * variance < floor < floor_share * variance:
-            stamps = None if record.stamps is None else record.stamps.numpy()
-            found[name] = torch.as_tensor(expected_load(series.numpy(), floor, stamps, is_torque))
+            found[name] = torch.as_tensor(expected_load(series.numpy(), floor, is_torque))
             errors[name] = torch.as_tensor(error_of_load(series.numpy(), floor, is_torque))
     if not found:
         return record
     return replace(record, inputs={**record.inputs, **found}, input_errors=errors)
 
 
-def expected_load(series: Array, floor: float, stamps: Array | None = None, is_torque: bool = False) -> Array:
+def expected_load(series: Array, floor: float, is_torque: bool = False) -> Array:
     """A load (time,) as it is to be expected where white noise of variance `floor` was measured with it.
 
     Args:
-        series: As measured.
+        series: As measured, at even instants.
         floor: Variance of the noise.
-        stamps: Instants in sampling intervals, where they are not evenly spaced.
         is_torque: Whether it is a torque on a shaft, which has no content in most lines of its spectrum.
     """
-    if stamps is None:
-        return _filtered(series, floor, is_torque)
-    even = np.linspace(stamps[0], stamps[-1], len(series))
-    between = make_interp_spline(stamps, series, DEGREE)(even)
-    return make_interp_spline(even, _filtered(between, floor, is_torque), DEGREE)(stamps)
+    ramp, lines, share = _spectrum(series, floor, is_torque)
+    return ramp + np.fft.irfft(share * lines, len(series))
 
 
 def error_of_load(series: Array, floor: float, is_torque: bool = False) -> Array:
@@ -85,11 +78,6 @@ def error_of_load(series: Array, floor: float, is_torque: bool = False) -> Array
     _, _, share = _spectrum(series, floor, is_torque)
     lags = np.arange(len(series))
     return floor * np.fft.irfft(share, len(series)) * np.clip(1 - 2 * lags / len(series), 0.0, 1.0)
-
-
-def _filtered(series: Array, floor: float, is_torque: bool) -> Array:
-    ramp, lines, share = _spectrum(series, floor, is_torque)
-    return ramp + np.fft.irfft(share * lines, len(series))
 
 
 def _spectrum(series: Array, floor: float, is_torque: bool) -> tuple[Array, NDArray[np.complex128], Array]:

@@ -28,7 +28,7 @@ def shaft_of(record: FitRecord, evidence: Evidence) -> Shaft | None:
     pinion, gear = teeth_of(evidence.parameters)
     teeth = (round(pinion), round(gear))
     if "pinion_angle" in record.inputs:
-        return Shaft(record.inputs["pinion_angle"].numpy(), teeth)
-    time = np.arange(len(record.response)) / record.sampling_rate
+        return Shaft(record.at_samples("pinion_angle").numpy(), teeth)
+    time = record.instants.numpy() / record.sampling_rate
     start, speed = record.conditions.get("pinion_angle", 0.0), record.conditions.get("pinion_speed", 0.0)
     return Shaft(start + speed * time, teeth)

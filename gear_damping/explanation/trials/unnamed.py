@@ -102,7 +102,7 @@ def _of_row(record: FitRecord, place: Array, rate: Array, evidence: Evidence, co
         found |= _at_shafts(shaft, place, rate, moved)
         found["force over speed and load"] = moved(_operated(record, shaft, place, rate, common))
     if "force" in record.inputs:
-        force = record.inputs["force"].numpy() / (common.force or 1.0)
+        force = record.at_samples("force").numpy() / (common.force or 1.0)
         found["force over the input"] = moved([force**2, force**3, np.gradient(force) * record.sampling_rate])
     return found
 
@@ -122,7 +122,8 @@ def _speed(record: FitRecord, shaft: Shaft) -> Array:
 
 
 def _load(record: FitRecord) -> Array:
-    known = record.inputs.get("pinion_torque", record.conditions.get("pinion_torque", 0.0))
+    name = "pinion_torque"
+    known = record.at_samples(name) if name in record.inputs else record.conditions.get(name, 0.0)
     return np.broadcast_to(np.asarray(known, dtype=float), len(record.response))
 
 

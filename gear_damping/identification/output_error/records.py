@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf, isinf, log
 
+import numpy as np
 import torch
 from torch import Tensor
 
@@ -154,7 +155,8 @@ class FitRecord:
         name: What it is called.
         response: Samples of its first response channel, (time,), float64.
         sampling_rate: Hz.
-        inputs: Measured input series at the same instants, by the name that the simulator gives them.
+        inputs: Measured input series, (time,) at even instants from the record's beginning on, by the name that the
+            simulator gives them.
         conditions: Parameters that are known for this record alone, by flat name.
         weight: Factor on its residuals, one over the noise level where records differ in it.
         observed: What the first response channel shows.
@@ -194,6 +196,18 @@ class FitRecord:
     def channels(self) -> tuple[Observed, ...]:
         """Every response channel, the first one first."""
         return (self.observed, *(channel for channel, _ in self.others))
+
+    @property
+    def instants(self) -> Tensor:
+        """Of the samples in sampling intervals, (time,)."""
+        return torch.arange(len(self.response), dtype=torch.float64) if self.stamps is None else self.stamps
+
+    def at_samples(self, name: str) -> Tensor:
+        """An input at the instants of the samples, (time,)."""
+        series = self.inputs[name]
+        if self.stamps is None:
+            return series
+        return torch.as_tensor(np.interp(self.stamps.numpy(), np.arange(len(series)), series.numpy()))
 
     @property
     def stacked(self) -> Tensor:

@@ -57,7 +57,7 @@ class Response:
         """By record, how the samples of each channel lie between those of the grid; None where they are on it."""
         found = {}
         for i, record in enumerate(self._records):
-            at = torch.arange(len(record.response), dtype=torch.float64) if record.stamps is None else record.stamps
+            at = record.instants
             late = [at - c.delay * record.sampling_rate for c in record.channels]
             even = record.stamps is None
             found[i] = [
@@ -149,7 +149,7 @@ def _values(record: FitRecord, channel: Observed, values: Tensor) -> Tensor:
 
 def _weights(record: FitRecord, channel: Observed, values: Tensor) -> Tensor:
     """What the record counts; nothing of what a late channel shows from before its beginning."""
-    positions = torch.arange(len(values), dtype=torch.float64) if record.stamps is None else record.stamps
+    positions = record.instants
     late = channel.delay * record.sampling_rate
     return record.weight * ((positions >= late) & (positions - late <= len(values) - 1)).double()
 

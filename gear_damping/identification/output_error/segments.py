@@ -47,21 +47,32 @@ WHOLE = Segments()
 
 
 def part(record: FitRecord, samples: slice, suffix: str = "") -> FitRecord:
-    """The samples of a slice of a record, as a record of its own or, without a suffix, a segment of it."""
+    """The samples of a slice of a record, as a record of its own or, without a suffix, a segment of it.
+
+    Inputs are known at even instants. Of samples with uneven stamps the part begins at the last one of these before its
+    first sample.
+    """
     first = samples.start or 0
-    stamps, begins = record.stamps, record.begins + first / record.sampling_rate
+    stamps, begins = record.stamps, first
     if stamps is not None:
-        stamps = stamps[samples] - stamps[first]
-        begins = record.begins + float(record.stamps[first]) / record.sampling_rate
+        begins = int(stamps[first])
+        stamps = stamps[samples] - begins
+    response = record.response[samples]
     cut = replace(
         record,
-        response=record.response[samples],
-        inputs={name: series[samples] for name, series in record.inputs.items()},
+        response=response,
+        inputs={name: _from(series, begins, len(response)) for name, series in record.inputs.items()},
         others=tuple((channel, values[samples]) for channel, values in record.others),
         stamps=stamps,
-        begins=begins,
+        begins=record.begins + begins / record.sampling_rate,
     )
     return replace(cut, name=record.name + suffix) if suffix else replace(cut, group=record.record)
+
+
+def _from(series: Tensor, begins: int, count: int) -> Tensor:
+    """So many values of a series (time,) from one on; the last one stays where there are fewer."""
+    found = series[begins : begins + count]
+    return torch.cat([found, series[-1:].expand(count - len(found))])
 
 
 def in_segments(records: Sequence[FitRecord], segments: Segments) -> list[FitRecord]:
