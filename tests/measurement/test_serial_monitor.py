@@ -36,3 +36,17 @@ def test_microseconds_beside_the_clock_are_another_clock_and_no_encoder(tmp_path
     assert (system[0], found.rate) == ("oscillator", pytest.approx(100.0))
     assert [guess.column.reference for guess in listed] == [2]
     assert found.columns[1].says == "goes on with the time stamps, in us: another clock"
+
+
+@pytest.mark.parametrize("sign", [", ", "; ", "\t", " "])
+def test_the_clock_of_pythons_logging_has_a_comma_that_parts_no_cells(sign, tmp_path):
+    """`2021-12-27 18:06:19,663 -0.015, -0.05`, as `%(asctime)s %(message)s` writes it."""
+    angle, command = -0.001 * COUNTS, 0.05 * (-1.0) ** (np.arange(N) // 100)
+    rows = (f"2021-12-27 18:06:{5 + k // 100:02d},{k % 100 * 10:03d} {x:.3f}{sign}{u:.2f}" for k, (x, u) in
+            enumerate(zip(angle, command, strict=True)))  # fmt: skip
+    (tmp_path / "run.log").write_text("\n".join(rows) + "\n")
+    table = read_table(tmp_path / "run.log")
+    values = [table.values(k) for k in range(len(table.names) - 3, len(table.names))]  # of blanks, behind a date
+    assert values[1] == pytest.approx(angle, abs=1e-9)
+    assert values[2] == pytest.approx(command, abs=1e-9)
+    assert np.diff(values[0]) == pytest.approx(0.01, abs=1e-9)

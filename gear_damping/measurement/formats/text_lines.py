@@ -41,6 +41,9 @@ _ARROW, _LONG = (
     re.compile(rb"^(\d{1,2}:\d{2}:\d{2}\.\d+) -> ", re.MULTILINE),
     1000,
 )  # before a line of a serial monitor; bytes of one
+_LOGGED = re.compile(
+    rb"^(\d{4}-\d\d-\d\d[ T]\d\d:\d\d:\d\d),(\d{3})[ \t]+(?=[-+.\d])", re.MULTILINE
+)  # `…:19,663 -0.015`
 _LINE_END = re.compile(rb"\r+\n|\r")  # also written twice by a text mode, or alone as computers of the nineties did
 
 
@@ -101,9 +104,12 @@ class Text:
 def _with_clocks_apart(text: bytes) -> bytes:
     """Lines behind a clock and an arrow, as Arduino's serial monitor shows them, with the clock as a cell of its own.
 
-    Beside names it is `clock`.
+    Beside names it is `clock`. So is what stands behind the clock of Python's logging, whose comma parts no cells.
     """
     last = text.rstrip()[-_LONG:].split(b"\n")[-1]
+    if found := _LOGGED.match(last):
+        sign = _sign_of(last[found.end() :].decode("utf-8", "replace")).encode()
+        return _LOGGED.sub(rb"\1.\2" + sign, text)
     found = _ARROW.match(last)
     if found is None:
         return text
