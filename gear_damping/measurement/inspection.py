@@ -36,6 +36,7 @@ from gear_damping.measurement.time_column import (
     counts_from_1970,
     find_stamps,
     named_clock,
+    runs_through,
     stamped_rate,
     unit_by_name,
 )
@@ -271,6 +272,8 @@ def clock_of(found: Inspection, column: Column) -> Column | None:
         return None
     if last_number(main.values) != last_number(nearest.values) == last_number(column.values):
         return nearest  # of two runs side by side it ends with this one
+    if runs_through(main.inside, nearest.inside):
+        return None  # it starts again with each part of one run
     n = min(main.inside.size, nearest.inside.size)
     own = nearest.stamps.in_seconds * np.diff(nearest.inside[:n])
     apart = np.abs(own - found.time.in_seconds * np.diff(main.inside[:n]))

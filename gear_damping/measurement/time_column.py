@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from gear_damping.measurement.column_kinds import ANGLE, MOTION, counts_rows
 from gear_damping.measurement.named_units import time_at_end
+from gear_damping.measurement.recordings import recordings
 from gear_damping.units import is_of_kind, to_si
 
 NAMED = re.compile(
@@ -94,11 +95,10 @@ def find_stamps(columns: Sequence[_Column], untimed: bool = False) -> Stamps | N
         untimed: Whether nothing else says the time, so that a first one of any name that rises evenly may be it.
     """
     for by in (_by_unit, _by_name, _by_steps, _by_ramp, _by_epoch):
-        for index, column in enumerate(columns):
-            says = by(index, column) if column.inside.size >= FEWEST_STAMPS else ""
-            if says:
-                unit, guessed = _unit(column)
-                return Stamps(index, unit, guessed, says)
+        seen = ((index, by(index, one)) for index, one in enumerate(columns) if one.inside.size >= FEWEST_STAMPS)
+        found = [Stamps(index, *_unit(columns[index]), says) for index, says in seen if says]
+        if found:
+            return _running_through(columns, found)
     telling = [k for k, one in enumerate(columns) if one.inside.size >= FEWEST_STAMPS and not counts_rows(one.inside)]
     if not untimed or not telling:
         return None
@@ -108,6 +108,17 @@ def find_stamps(columns: Sequence[_Column], untimed: bool = False) -> Stamps | N
     if len(steady) != 1:
         return None
     return Stamps(steady[0], *_unit(columns[steady[0]]), "goes on by the same whole number in nearly all rows")
+
+
+def _running_through(columns: Sequence[_Column], found: Sequence[Stamps]) -> Stamps:
+    """The first of some clocks; where it starts again and others run on through as many rows, the first of those."""
+    begun = columns[found[0].index].inside
+    return next((one for one in found[1:] if runs_through(columns[one.index].inside, begun)), found[0])
+
+
+def runs_through(stamps: NDArray[np.float64], other: NDArray[np.float64]) -> bool:
+    """Whether stamps never go back through as many rows as those of another clock have, which starts again in them."""
+    return stamps.size >= other.size and bool(np.all(np.diff(stamps) > 0)) and len(recordings(other)) > 1
 
 
 def named_clock(column: _Column) -> Stamps | None:

@@ -136,6 +136,23 @@ def test_the_clock_of_all_that_is_declared_is_that_of_the_record(tmp_path):
     assert 'time: {column: "X[s].1", unit: s}' in starting_yaml(found, system, listed)
 
 
+@pytest.mark.parametrize("names", ["time [s],time function [s]", "time function [s],time [s]", "time [s],t_part [s]"])
+def test_of_two_clocks_the_one_that_runs_through_is_that_of_the_record(names, tmp_path):
+    """Beside one that starts again with each of six parts of a test, wherever it stands."""
+    t = np.cumsum(0.004 + 0.001 * RNG(3).uniform(size=1200))
+    parts = (t - t[0]) % 0.9 + 2e-3 * RNG(4).uniform(size=t.size)
+    clocks = {"time [s]": t, names.replace("time [s]", "").strip(","): parts}
+    table = [clocks[name] for name in names.split(",")] + [np.sin(9 * t)]
+    lines = [",".join(f"{cell:.6f}" for cell in row) for row in zip(*table, strict=True)]
+    (tmp_path / "parts.csv").write_text("\n".join([f"{names},a1 position [rad]", *lines]) + "\n")
+    found, system, listed = guessed(read_table(tmp_path / "parts.csv"))
+    assert (found.rows, found.taken) == ((0, 1200), "")
+    assert found.base.time[-1] - found.base.time[0] == pytest.approx(t[-1] - t[0], rel=1e-4)
+    text = starting_yaml(found, system, listed)
+    assert 'time: {column: "time [s]", unit: s}\n' in text
+    assert text.count("time: {") == 1
+
+
 RUN_NAMES = [
     ("Run 1: Time (s)", "Run 1: Position (m)", "Run 1: Force (N)"),
     ("Latest: Time (s)", "Latest: Position (m)", "Latest: Force (N)"),
