@@ -129,7 +129,7 @@ class RawReader:
         if self.plan.window:
             key = f"{self.plan.key}.window"
             within = window_rows(self._seconds(), self.plan.window, key, self.source, self._window_remedy())
-            self.rows = replace(self.rows, first=first + within[0], stop=first + within[1])
+            self.rows = Rows(first + within[0], first + within[1])  # blank rows lie behind it
         if self.rows.count < LEAST_SAMPLES:
             rule = f"{self.rows.count} samples; a record needs at least {LEAST_SAMPLES}"
             remedy = "use a longer slice, window or file"

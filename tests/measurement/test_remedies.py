@@ -182,6 +182,14 @@ def test_a_run_beside_a_longer_one_ends_where_its_columns_do(tmp_path, columns, 
     assert [found.message for found in record.findings if found.kind == "blank_rows"] == [said] * bool(blank)
 
 
+@pytest.mark.parametrize("end", [1.2, 1.49])
+def test_blank_rows_behind_a_window_are_not_those_of_the_record(tmp_path, end):
+    rows = f"    window: {{from: 0.2, to: {end}, unit: s}}\n"
+    (record,) = load_measurement(_runs_beside_each_other(tmp_path, (150, 149), rows, is_text=True)).records
+    assert "blank_rows" not in {found.kind for found in record.findings}
+    assert [record.time[0], record.time[-1]] == pytest.approx([0.2, end - 0.01])
+
+
 def test_stamps_that_go_on_alone_are_no_end_of_a_run(tmp_path):
     with pytest.raises(InputError, match="give the channel its own time"):
         load_measurement(_runs_beside_each_other(tmp_path, (200, 100)))
