@@ -21,13 +21,14 @@ class Spectrum:
         frequency: (m,) in Hz, or in cycles a sample where no rate is known.
         density: (m,) in the unit of the values squared over that of the frequency.
         averaged: Segments that were averaged.
-        strongest: The frequency of the highest line of the whole record.
+        strongest: The frequency of the highest line of the whole record; None where that lasts as long as the record,
+            as of what coasts down or drifts.
     """
 
     frequency: NDArray[np.float64]
     density: NDArray[np.float64]
     averaged: int
-    strongest: float
+    strongest: float | None
 
     @property
     def floor(self) -> float:
@@ -70,13 +71,15 @@ def spectrum_of(values: NDArray[np.float64], rate: float = 1.0) -> Spectrum | No
     level = centred - np.outer(centred @ place / (place @ place), place)
     power = np.abs(np.fft.rfft(level * window, axis=1)) ** 2
     density = 2 * power.mean(axis=0) / (rate * (window @ window))
-    return Spectrum(np.fft.rfftfreq(length, 1 / rate), density, len(segments), _strongest(values) * rate)
+    swings = _strongest(values)
+    strongest = swings * rate / n if swings > 1 else None
+    return Spectrum(np.fft.rfftfreq(length, 1 / rate), density, len(segments), strongest)
 
 
-def _strongest(values: NDArray[np.float64]) -> float:
-    """In cycles a sample, without the line through the values."""
+def _strongest(values: NDArray[np.float64]) -> int:
+    """In periods of all the values, without the line through them."""
     place = np.linspace(-1.0, 1.0, values.size)
     centred = values - values.mean()
     level = centred - place * (centred @ place) / (place @ place)
     lines = np.abs(np.fft.rfft(level * np.hanning(values.size)))
-    return float(1 + np.argmax(lines[1:])) / values.size
+    return 1 + int(np.argmax(lines[1:]))

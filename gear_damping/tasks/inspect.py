@@ -181,7 +181,8 @@ def _noise(values: NDArray, spectrum: Spectrum | None, step: float, rate: float 
     parts = []
     if spectrum is not None:
         parts.append(f"noise {spectrum.noise:.3g} (floor of the spectrum)")
-        parts.append(f"strongest at {spectrum.strongest:.4g} {'Hz' if rate else 'cycles a sample'}")
+        if spectrum.strongest is not None:
+            parts.append(f"strongest at {spectrum.strongest:.4g} {'Hz' if rate else 'cycles a sample'}")
     if step:
         parts.append(f"steps of {step:.4g}, whose rounding makes {step / 12**0.5:.2g}")
     return ", ".join(parts)

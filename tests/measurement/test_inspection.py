@@ -29,6 +29,13 @@ def test_the_floor_of_the_spectrum_is_the_noise_below_a_strong_decay(n, sigma):
     assert found.strongest == pytest.approx(13.3, abs=max(0.1, RATE / n))
 
 
+@pytest.mark.parametrize("coasting", [np.exp(-T), (1 - T / 6) ** 2, np.maximum(1 - T / 4, 0), np.minimum(T, 1)])
+def test_what_coasts_down_or_runs_up_is_strongest_nowhere(coasting):
+    noise = 1e-3 * RNG(5).normal(size=N)
+    assert spectrum_of(100 * coasting + noise, RATE).strongest is None
+    assert spectrum_of(coasting + np.sin(2 * np.pi * 3 * T) + noise, RATE).strongest == pytest.approx(3, abs=0.2)
+
+
 def test_a_record_too_short_for_a_floor_has_none():
     assert spectrum_of(np.arange(63.0)) is None
 

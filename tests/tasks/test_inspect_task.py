@@ -116,6 +116,17 @@ def test_a_bare_file_of_every_format_is_told_drawn_and_declared(name, tmp_path):
         assert record.channels["displacement"].declared_unit == "rad"
 
 
+def test_of_what_coasts_down_no_strongest_frequency_is_told(tmp_path):
+    speed = 300 * np.exp(-TIME) + 0.1 * np.random.default_rng(2).normal(size=TIME.size)
+    np.savetxt(
+        tmp_path / "coast.csv", np.column_stack([TIME, speed]), delimiter=",", header="t [s],n [rpm]", comments=""
+    )
+    assert inspected(tmp_path / "coast.csv", tmp_path / "out")[0] == 0
+    text = (tmp_path / "out" / "inspection.txt").read_text()
+    assert "(floor of the spectrum)" in text
+    assert "strongest" not in text
+
+
 def test_the_start_of_a_file_that_says_nothing_asks_for_what_is_missing(tmp_path):
     np.savetxt(tmp_path / "bare.txt", np.column_stack([ANGLE, TORQUE]))
     code, left = inspected(tmp_path / "bare.txt", tmp_path / "out")
