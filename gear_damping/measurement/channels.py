@@ -10,7 +10,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.angular_error import is_angle, is_angular_acceleration
 from gear_damping.measurement.quantities import PERIODS, Column, Corner, Cutoff, Gain, Measured, Rate, Share
 from gear_damping.measurement.record import Quantity
-from gear_damping.schema.mappings import Declared, key
+from gear_damping.schema.mappings import Declared, Path, key
 from gear_damping.schema.values import Flag, OneOf, Text, refuse
 
 Reasons = Frozen[str, tuple[str, str]]
@@ -41,6 +41,7 @@ class Timed(Declared):
         return self
 
 
+SEVERAL = "lists several sensors, and a record takes one"  # how the rule begins that refuses a list of them
 _GAIN = "write gain, by which values are divided: what the column holds for one unit of the quantity"
 _SCALES = {
     **dict.fromkeys(("scale", "factor", "sensitivity", "calibration", "scaling", "multiplier"), _GAIN),
@@ -58,6 +59,15 @@ class AnyChannel(Timed):
     si: ClassVar[str | None] = None  # the unit that values are converted to; None: the rig's own
     derivative: ClassVar[int | None] = None  # of an oscillator's displacement; None for an input
     is_input: ClassVar[bool] = False
+
+    @classmethod
+    def not_a_mapping(cls, place: Path, value: object) -> tuple[str, str]:
+        """Rule and remedy where something else, a value, stands at `place`; several sensors are a list."""
+        if not isinstance(value, list) or len(value) < 2 or not all(isinstance(one, dict) for one in value):
+            return super().not_a_mapping(place, value)
+        remedy = "keep one, without the list; declare each of the others in a measurement.yaml of its own beside the "
+        return f"{SEVERAL} {place[-1]}", f"{remedy}same file, and compare what comes out"
+
     column: Annotated[str | int, Column()] = key(
         "Header text without its quotes, or 0-based index.", "values",
         missing="name the column by its header text or its 0-based index",

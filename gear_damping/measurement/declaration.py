@@ -1,13 +1,13 @@
 """From the YAML to a plan: what it declares, checked, before any measured file is opened; every problem is noted."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.measurement import layout
 from gear_damping.measurement.angular_error import along_the_line, is_angle_of_a_shaft, is_angular_acceleration
-from gear_damping.measurement.channels import AnyChannel, Response, Timed
+from gear_damping.measurement.channels import SEVERAL, AnyChannel, Response, Timed
 from gear_damping.measurement.consistency import inconsistencies
 from gear_damping.measurement.own_system import NONE, file_of, si_units
 from gear_damping.measurement.record import Quantity
@@ -131,9 +131,11 @@ def declared_plan(
         return None
     before = len(problems)
     file = read_declared(file_of(own[system]) if system in own else layout.FILES[system], content, problems, source)
+    found = problems[before:]
+    problems[before:] = _several_once(found)
     if file is None:
         return None
-    wrong = {k for k in range(len(file.records)) if any(p.key.startswith(f"records[{k}]") for p in problems[before:])}
+    wrong = {k for k in range(len(file.records)) if any(p.key.startswith(f"records[{k}]") for p in found)}
     problems += [Problem(p.key, p.rule, p.value, p.remedy, source) for p in inconsistencies(file, wrong)]
     parameters, in_own_units = _parameters(file)
     records = tuple(
@@ -143,6 +145,17 @@ def declared_plan(
     )
     segment_s = file.segments.value if file.segments else None
     return Plan(system, parameters, in_own_units, records, segment_s, _kept(file, own.get(system)))
+
+
+def _several_once(found: Sequence[Problem]) -> list[Problem]:
+    """The problems; that a record takes one sensor of a kind is said of the first record that lists several."""
+    told, kept = set(), []
+    for problem in found:
+        of_a_channel = problem.rule, problem.key.rpartition(".")[2]
+        if not problem.rule.startswith(SEVERAL) or of_a_channel not in told:
+            kept.append(problem)
+        told.add(of_a_channel)
+    return kept
 
 
 def _kept(file: layout.AnyFile, own: "type[System] | None") -> Mapping[str, str] | None:

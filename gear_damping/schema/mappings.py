@@ -40,8 +40,8 @@ class Declared(BaseModel):
         return name in self.model_fields_set
 
     @classmethod
-    def not_a_mapping(cls, place: Path) -> tuple[str, str]:
-        """Rule and remedy where something else stands at `place`."""
+    def not_a_mapping(cls, place: Path, value: object) -> tuple[str, str]:
+        """Rule and remedy where something else, a value, stands at `place`."""
         return f"must be a mapping with keys among {', '.join(names(cls))}", "write `key: value` lines"
 
 
@@ -51,8 +51,8 @@ class Group(Declared):
     unknown: ClassVar[str] = "no such key"
 
     @classmethod
-    def not_a_mapping(cls, place: Path) -> tuple[str, str]:
-        """Rule and remedy where something else stands at `place`."""
+    def not_a_mapping(cls, place: Path, value: object) -> tuple[str, str]:
+        """Rule and remedy where something else, a value, stands at `place`."""
         return "is a group of keys", f"give {'.'.join(map(str, place))}.<key>, or choose {place[-1]}=<choice>"
 
 
@@ -243,7 +243,7 @@ def _problems(model: type[Declared], error: Mapping[str, Any]) -> list[tuple[Pat
     if kind == "extra_forbidden":
         return [(place, _unknown(_model_at(model, place[:-1]), place[-1], value), None)]
     if kind == "model_type":
-        rule, remedy = _model_at(model, place).not_a_mapping(place)
+        rule, remedy = _model_at(model, place).not_a_mapping(place, value)
         return [(place, Problem("", rule, value, remedy), None)]
     return [(place, Problem("", error["msg"], value), None)]
 

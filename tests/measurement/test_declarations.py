@@ -166,6 +166,20 @@ def test_shared_anchors_are_told_once_for_each_record_and_nothing_follows(tmp_pa
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize("system", ["oscillator", "gear_pair"])
+def test_several_sensors_of_a_kind_are_told_once_with_what_to_do_with_the_others(system, tmp_path):
+    sensors = "[{column: a1, unit: m/s^2}, {column: a2, unit: m/s^2}]"
+    text = f"system: {system}\nrecords:\n  - {{file: a, channels: &c {{{TIME}, acceleration: {sensors}}}}}\n"
+    text += "  - {file: b, channels: *c}\n  - {file: c, channels: *c, rolle: fit}\n"
+    several, other = sorted(_problems(tmp_path, text))
+    assert several.startswith("records[0].channels.acceleration = [")
+    assert ": lists several sensors, and a record takes one acceleration; " in several
+    assert "remedy: keep one, without the list; declare each of the others in a measurement.yaml of its own" in several
+    assert other.startswith("records[2].rolle: unknown key")
+    lone = text.replace(sensors, "[a1]")
+    assert sum("must be a mapping with keys among" in one for one in _problems(tmp_path, lone)) == 3
+
+
 def test_a_yaml_that_holds_itself_is_one_problem(tmp_path):
     assert len(_problems(tmp_path, "system: oscillator\nrecords:\n  - &a [*a]\n")) == 1
 
