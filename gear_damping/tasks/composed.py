@@ -86,10 +86,27 @@ def _problems_of_measurement(config: Mapping[str, Any], origin: Origin, declared
         if plugins:
             readers(plugins)
         if declared and file is not None and declares(file, task):
-            check_declaration(file, plugins)
+            other = _of_another_system(config, origin, check_declaration(file, plugins).system)
+            return problems + other if other or task == INSPECT else []
     except InputError as error:
         return problems + placed(error, {key: origin.of(key) for key in (PATH, PLUGINS)})
     return problems if task == INSPECT else []
+
+
+def _of_another_system(config: Mapping[str, Any], origin: Origin, measured: str) -> list[Problem]:
+    """A typed `simulator=` that says of the rig what its measurement.yaml contradicts; a file on top has its own."""
+    from gear_damping.config.acting import OF_A_RIG
+    from gear_damping.measurement.layout import SYSTEMS
+
+    typed = dict(origin.typed()).get("simulator")
+    simulator = config.get("simulator")
+    if typed is None or config["task"] not in OF_A_RIG or not isinstance(simulator, Mapping):
+        return []
+    if typed == measured or not {typed, measured} <= {*SYSTEMS} or simulator.get("extended") is not None:
+        return []
+    rule = f"contradicts the measurement, which says system: {measured}, by which the rig is simulated here"
+    remedy = "leave it out, with family=none beside it, or correct system in the measurement.yaml"
+    return [Problem("simulator", rule, typed, remedy, origin.of("simulator"))]
 
 
 def _physics_typed(overrides: Sequence[str]) -> bool:

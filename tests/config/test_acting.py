@@ -137,6 +137,24 @@ def test_what_only_estimators_read_is_refused_where_none_is_asked(words, said):
     assert ("model=classical" in found.remedy) == (len(words) == 1)
 
 
+@pytest.mark.parametrize("task", ["identify", "explain"])
+def test_a_simulator_that_the_measurement_contradicts_is_refused(task, tmp_path):
+    """What is measured says which rig is simulated, so that another one has no effect; a file on top has its own."""
+    path = tmp_path / "measurement.yaml"
+    channels = "{sampling_rate: 1 kHz, transmission_error: {column: x, unit: um}}"
+    conditions = "{pinion_speed: 900 rpm, pinion_torque: 60 Nm}"
+    record = f"{{file: a.csv, channels: {channels}, conditions: {conditions}}}"
+    path.write_text(f"system: gear_pair\nrecords:\n  - {record}\n")
+    file = f"measurement.path='{path}'"
+    (found,) = problems(task, file, "simulator=oscillator", "family=none")
+    assert (found.key, found.value) == ("simulator", "oscillator")
+    assert "says system: gear_pair" in found.rule
+    assert "leave it out" in found.remedy
+    assert problems(task, file, "simulator=gear_pair") == problems(task, file) == []
+    (found,) = problems(task, "simulator=gear_pair")
+    assert "says system: oscillator" in found.rule
+
+
 @pytest.mark.parametrize("word", ["model=classical", "model=output_error", "checkpoint=README.md"])
 def test_the_solver_has_no_effect_on_estimators(word):
     (found,) = problems("identify", "simulator.solver.accuracy=1e-9", word)
