@@ -1,6 +1,6 @@
 """Reading what a record's plan asks for out of its file, before units are compared."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from copy import copy
 from dataclasses import dataclass, replace
@@ -19,6 +19,7 @@ from gear_damping.measurement.file_clocks import FileClocks, conflict_with_file,
 from gear_damping.measurement.formats.moments import DAY
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.named_units import unit_at_end
+from gear_damping.measurement.record import Finding
 from gear_damping.measurement.rows import LEAST_SAMPLES, MOST_MISSING, Columns, Rows, filled_in, last_number
 from gear_damping.measurement.stamp_units import (
     completed_by,
@@ -31,12 +32,15 @@ from gear_damping.measurement.stamp_units import (
 )
 from gear_damping.measurement.time_column import is_time, unit_by_name
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
+from gear_damping.measurement.vocabulary import OSCILLATOR_CHANNELS
+from gear_damping.measurement.worked_out import worked_out
 from gear_damping.schema.values import Problems
 from gear_damping.units import multiple_of_a_unit, parse_unit, scaled_unit, to_si
 
 _SAME_RATE = 1e-3  # how far a declared rate may lie from the file's
 _CLOCKS_AGREE = 0.9  # of a rate: two clocks of the same rows are nearer to each other, however poor their quartz
 SAME_UNIT = 1e-9  # the same of units
+_LOOKED_AT = 40  # columns that a motion may be the slope of: of a file with more nobody waits for all
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,10 +98,24 @@ class RawReader:
                 angles[plan.name] = shaft_angle(self._with_unit(plan), base, self.sliced, self.unsliced, self.file)
         if base is None:
             return None
+        base = replace(base, findings=(*base.findings, *self._worked_out(channels, base)))
         with self.problems.collecting():
             base = self._at_its_rate(base, within)
         complete = len(self.problems) == before
         return RawRecord(self.plan, self.table, sha256, base, channels, angles, complete)
+
+    def _worked_out(self, channels: Sequence[RawChannel], base: TimeBase) -> Iterator[Finding]:
+        """Notes of motions of an oscillator that are slopes of other columns."""
+        stamps = [] if self.plan.timing.column is None else [self.table.index(self.plan.timing.column, "")]
+        read: dict[int, NDArray[np.float64]] = {}
+        motions = [one for one in channels if one.own_time is None and "mounting" not in one.plan.sensor]
+        for motion in motions if base.uniform else ():
+            own = self.table.index(motion.plan.column, "")
+            for place in range(len(self.table.names))[:_LOOKED_AT] if OSCILLATOR_CHANNELS.get(motion.plan.name) else ():
+                with suppress(InputError):  # what has gaps is the slope of nothing
+                    read.setdefault(place, self.sliced(place, ""))
+            others = [(self.table.names[k] or str(k), v) for k, v in read.items() if k not in (own, *stamps)]
+            yield from worked_out(motion.plan.name, motion.values, base.time, others)
 
     def _with_unit(self, plan: EncoderPlan) -> EncoderPlan:
         """An encoder with the unit of its column: as declared, else that of the file, else s of times and V."""
