@@ -113,3 +113,17 @@ def test_a_station_whose_values_are_cut_is_said(tmp_path):
 def test_a_station_without_numbers_is_refused(below, said, tmp_path):
     with pytest.raises(InputError, match=said):
         written(tmp_path, HEAD.format(302, "00.000000", "SLIST", "COUNTS") + below, "a.asc")
+
+
+SCOPE = (  # three settings of numbers come first, and the line above the values has one cell
+    "Memory Length,302,\nIntpDistance,0,\nTrigger Level,0,\nSource,CH1,\nVertical Units,V,\nVertical Scale,1.0,\n"
+    "Sampling Period,1.000e-03,\nFirmware,V1,\nMode,Detail,\nWaveform Data,\n"
+)
+
+
+def test_settings_of_numbers_above_a_line_of_one_cell_are_no_rows(tmp_path):
+    found = written(tmp_path, SCOPE + "".join(f"{k / RATE:.6e},{x:.6e},\n" for k, x in enumerate(MOTION)))
+    np.testing.assert_allclose(found.values(0), np.arange(302) / RATE, atol=1e-9)
+    np.testing.assert_allclose(found.values(1), MOTION, atol=1e-6)
+    assert found.unit(1) == "V"
+    assert inspect_table(found).rate == pytest.approx(RATE)

@@ -258,14 +258,14 @@ def _has_number(row: Sequence[str]) -> bool:
 def _first_values(rows: Sequence[Sequence[str]], width: int) -> int:
     """The first row of values: settings may be numbers too, but a table goes on for a few rows without one of texts.
 
-    Settings of a name and a number each look like values of two columns, where names of two stand below them; so do
+    Settings of a name and a number each look like values of two columns, where a line of texts stands below them; so do
     numbers alone that are fewer than the columns.
     """
     texts = [not _has_number(row) for row in rows]
     values = (k for k, row in enumerate(rows) if _is_values(row, width))
     first = next((k for k in values if not any(texts[k : k + _TABLE])), len(rows))
     words = [_is_word(row[0]) for row in rows]
-    named = (k for k in range(first + 1, len(rows) - _TABLE) if texts[k - 1] and filled(rows[k - 1]) == width)
+    named = (k for k in range(first + 1, len(rows) - _TABLE) if texts[k - 1])
     settings = [is_word or filled(row) < width for is_word, row in zip(words, rows, strict=True)]
     below = (k for k in named if all(settings[first:k]) and all(map(is_written, rows[k][:width])))
     return next((k for k in below if not any(words[k:])), first)
