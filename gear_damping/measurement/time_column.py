@@ -1,7 +1,7 @@
 """Which column of a file holds the time stamps, and in what unit."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -94,7 +94,7 @@ def find_stamps(columns: Sequence[_Column], untimed: bool = False) -> Stamps | N
         columns: Those of the file.
         untimed: Whether nothing else says the time, so that a first one of any name that rises evenly may be it.
     """
-    for by in (_by_unit, _by_name, _by_steps, _by_ramp, _by_epoch):
+    for by in (_by_unit, _by_name, _behind_row_numbers(columns), _by_steps, _by_ramp, _by_epoch):
         seen = ((index, by(index, one)) for index, one in enumerate(columns) if one.inside.size >= FEWEST_STAMPS)
         found = [Stamps(index, *_unit(columns[index]), says) for index, says in seen if says]
         if found:
@@ -256,6 +256,17 @@ def _by_name(index: int, column: _Column) -> str:
     named = NAMED.search(_bare(column.reference)) or time_at_end(column.reference)
     free = column.unit is None or is_time(column.unit)
     return "advances and is named like a time" if named and free and _advances(column) else ""
+
+
+def _behind_row_numbers(columns: Sequence[_Column]) -> Callable[[int, _Column], str]:
+    """What sees a second column that advances evenly where neither it nor the first, which counts the rows, is named.
+
+    Whole numbers may be the counts of a shaft.
+    """
+    bare = [one for one in columns[:2] if one.unit is None and not _named(one) and one.inside.size >= FEWEST_STAMPS]
+    follows = len(bare) == 2 and counts_rows(bare[0].inside) and _is_even(bare[1])
+    follows = follows and bool(np.any(bare[1].inside != np.round(bare[1].inside)))
+    return lambda index, column: "advances evenly behind the numbers of the rows" if follows and index == 1 else ""
 
 
 def _by_steps(index: int, column: _Column) -> str:

@@ -127,3 +127,19 @@ def test_settings_of_numbers_above_a_line_of_one_cell_are_no_rows(tmp_path):
     np.testing.assert_allclose(found.values(1), MOTION, atol=1e-6)
     assert found.unit(1) == "V"
     assert inspect_table(found).rate == pytest.approx(RATE)
+
+
+@pytest.mark.parametrize("rate", [1000.0, 2560.0])
+@pytest.mark.parametrize("above", ["X-Axis unit:\ts\nY-Axis unit:\tm/s^2\n", "X-axis: [s] (Time)\n"])
+def test_behind_the_numbers_of_the_rows_comes_the_time(rate, above, tmp_path):
+    """As an analyser exports a time record: the numbers of the rows are no milliseconds."""
+    rows = "".join(f"{k + 1}\t{k / rate:.6E}\t{x:.6E}\n" for k, x in enumerate(MOTION))
+    found = inspect_table(written(tmp_path, f"Title1:\tInput\nX-Axis size:\t302\n{above}{rows}", "a.txt"))
+    assert (found.time.index, found.time.unit) == (1, "s")
+    assert found.rate == pytest.approx(rate, rel=1e-3)
+    assert found.columns[2].unit == ("m/s^2" if "unit" in above else None)
+
+
+def test_whole_numbers_behind_those_of_the_rows_may_be_counts_of_a_shaft(tmp_path):
+    rows = "".join(f"{k + 1}\t{500 * k}\t{x:.6E}\n" for k, x in enumerate(MOTION))
+    assert inspect_table(written(tmp_path, rows, "a.txt")).time.index == 0

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.column_kinds import counts_rows
 from gear_damping.measurement.formats.axis_units import axis_units
 from gear_damping.measurement.formats.blocks import blocks_of, listed
 from gear_damping.measurement.formats.cells import (
@@ -76,7 +77,8 @@ def read(path: Path, max_bytes: int) -> Table:
             frame = frame[~(frame == "").all(axis=1)]  # rows of delimiters alone
     lines = _Lines(path, max_bytes, first_line)
     above = [row for line, row in islice(text.rows(), HEAD) if line < first_line]
-    axes = axis_units(above, width)
+    numbered = not header.name(0) and is_real(frame[0].dtype) and counts_rows(frame[0].to_numpy())
+    axes = axis_units(above, width, numbered)
     units = [header.unit(k) or axes.get(k) for k in range(width)]
     columns = [Cells(header.name(k), units[k], frame[k].to_numpy(), lines, header.also(k)) for k in range(width)]
     columns, below = without_footer(columns)
