@@ -6,6 +6,7 @@ Others may as well be a side, a channel or a number of it, and count where a uni
 
 import re
 
+from gear_damping.measurement.formats.unit_words import as_ours
 from gear_damping.units import is_of_kind, multiple_of_a_unit, scaled_unit
 
 _MEASURE = (
@@ -33,7 +34,7 @@ _PARTS = {"rad", "bar", "mil"}  # `rad direction`, `bar 3`: of a unit of their k
 
 def unit_said(text: str) -> str | None:
     """The unit that a text in brackets says beyond doubt, a step or a factor of one too; None of any other text."""
-    text = text.strip()
+    text = as_ours(text.strip())
     if is_known(text) or multiple_of_a_unit(text) or scaled_unit(text):
         return text
     if (said := _IN.search(text)) and is_known(said[1]):

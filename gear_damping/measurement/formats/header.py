@@ -8,6 +8,7 @@ from gear_damping.errors import InputError
 from gear_damping.measurement.formats.bracket_words import unit_said
 from gear_damping.measurement.formats.factors import factor_in
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written
+from gear_damping.measurement.formats.unit_words import as_ours
 from gear_damping.measurement.named_units import compound_at_end
 from gear_damping.measurement.time_column import NAMED, is_time
 from gear_damping.units import multiple_of_a_unit, parse_unit, scaled_unit
@@ -70,7 +71,7 @@ class Header:
     def unit(self, k: int) -> str | None:
         """The unit below the name of column `k`, or in brackets at its end, as in `Acc DE (m/s^2)`."""
         if k < len(self.units):
-            return self.units[k].strip("[]() ") or None
+            return as_ours(self.units[k].strip("[]() ")) or None
         return bracket_unit(self.name(k))
 
 
@@ -293,7 +294,7 @@ def is_units(row: Sequence[str]) -> bool:
     cells = [cell.strip("[]() ") for cell in row]
     named = [cell for cell in cells if cell not in _NO_UNIT]
     counts = any if all(_IN_BRACKETS.fullmatch(cell.strip()) for cell in row) else all
-    return bool(named) and not _has_number(row) and counts(_is_unit(cell) for cell in named)
+    return bool(named) and not _has_number(row) and counts(_is_unit(as_ours(cell)) for cell in named)
 
 
 def _is_unit(cell: str) -> bool:
