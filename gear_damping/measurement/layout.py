@@ -17,7 +17,7 @@ from gear_damping.measurement.rig import (
     OscillatorConditions,
     OscillatorParameters,
 )
-from gear_damping.schema.mappings import Declared, Item, Listed, Word, key
+from gear_damping.schema.mappings import Declared, Item, Listed, Path, Word, key
 from gear_damping.schema.values import Flag, Number, OneOf, Text, refuse
 from gear_damping.units import parse_unit, to_si
 
@@ -190,6 +190,15 @@ class Window(Declared):
         "Where it ends: samples before this time.", "rows", missing="give the last time", alias="to"
     )
     unit: Annotated[str, Text()] = key("Unit of those that are plain numbers, for example s.", "rows")
+
+    @classmethod
+    def not_a_mapping(cls, place: Path, value: object) -> tuple[str, str]:
+        """Rule and remedy where something else, a value, stands at `place`; a list of two times is what people mean."""
+        rule, remedy = super().not_a_mapping(place, value)
+        if isinstance(value, list) and len(value) == 2 and all(isinstance(one, int | float | str) for one in value):
+            first, last = value
+            remedy = f"write window: {{from: {first}, to: {last}, unit: s}}, or slice: [a, b] with the numbers of rows"
+        return rule, remedy
 
     @model_validator(mode="after")
     def _ordered(self) -> "Window":

@@ -180,6 +180,12 @@ def test_several_sensors_of_a_kind_are_told_once_with_what_to_do_with_the_others
     assert sum("must be a mapping with keys among" in one for one in _problems(tmp_path, lone)) == 3
 
 
+def test_a_window_as_a_list_of_two_times_is_told_as_it_is_written(tmp_path):
+    text = "system: oscillator\nrecords:\n  - {file: a, window: [0.1, 0.9], channels: {TIME, velocity: {column: v}}}\n"
+    (said,) = _problems(tmp_path, text.replace("TIME", TIME))
+    assert "remedy: write window: {from: 0.1, to: 0.9, unit: s}, or slice: [a, b] with the numbers of rows" in said
+
+
 def test_a_yaml_that_holds_itself_is_one_problem(tmp_path):
     assert len(_problems(tmp_path, "system: oscillator\nrecords:\n  - &a [*a]\n")) == 1
 
