@@ -1,5 +1,6 @@
 """Units of headers in other languages and in spellings of their own are read, and contradict another one."""
 
+import h5py
 import numpy as np
 import pytest
 import yaml
@@ -76,3 +77,19 @@ def test_a_bare_file_has_the_clock_and_the_units_that_it_says(time, below, rate,
     assert found.time.guessed == ""
     assert found.rate == pytest.approx(rate)
     assert found.columns[1].unit == ("rpm" if below else "rev/min")
+
+
+_ATTRIBUTES = [("mm/seg", "m/s", 1), ("mm/seg", "mm/s", 0), ("giri/min", "rpm", 0)]
+
+
+@pytest.mark.parametrize(("said", "unit", "problems"), _ATTRIBUTES)
+def test_an_attribute_is_read_as_a_header_is(said, unit, problems, tmp_path):
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["t"], file["v"] = TIME, np.sin(20 * TIME)
+        file["t"].attrs["unit"], file["v"].attrs["units"] = "seg", said
+    channels = {"time": {"column": "t"}, "velocity": {"column": "v", "unit": unit}}
+    text = yaml.safe_dump({"system": "oscillator", "records": [{"file": "a.h5", "channels": channels}]})
+    (tmp_path / "m.yaml").write_text(text)
+    (record,) = load_measurement(tmp_path / "m.yaml").records
+    assert record.sampling_rate == pytest.approx(100)
+    assert [found.kind for found in record.findings].count("unit_conflict") == problems

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.measurement.formats.blocks import Block
+from gear_damping.measurement.formats.unit_words import as_ours
 
 CLOCK = 2  # numbers of a clock: the first time and the rate
 _SHOWN = 20  # arrays that a message lists
@@ -239,7 +240,8 @@ class ArrayTable(Table):
 
     def unit(self, index: int) -> str | None:
         """The unit that the file gives for the column's array, or None."""
-        return self._held[self._place[index][0]].unit
+        said = self._held[self._place[index][0]].unit
+        return said and as_ours(said)
 
     def clock(self, index: int) -> tuple[float, float] | None:
         """The time of the column's first sample in s and its rate in Hz, where the file gives them."""
