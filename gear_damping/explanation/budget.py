@@ -88,11 +88,17 @@ class Budget:
         self._waiting -= {what} if refused else set()
         return refused
 
-    def postpones(self, what: str) -> bool:
-        """Whether it is late, so that what promises little waits; it is noted until it is asked for again."""
-        if what not in self.not_tried and self._is_over(LATE):
+    def postpones(self, what: str, at_once: bool = False) -> bool:
+        """Whether it is late, so that what promises little waits; it is noted until it is asked for again.
+
+        Args:
+            what: An effect.
+            at_once: Whether it waits however late it is.
+        """
+        waits = at_once or self._is_over(LATE)
+        if waits and what not in self.not_tried:
             self._waiting.add(what)
-        return self._noted(what, self._is_over(LATE))
+        return self._noted(what, waits)
 
     def asks_again(self, names: Iterable[str]) -> None:
         """What had waited has a new score; what there was no time for at all stays noted."""

@@ -47,11 +47,12 @@ def test_what_promises_little_waits_from_half_of_the_time_on_and_is_noted_until_
     for second, is_late in ((149.0, False), (151.0, True)):
         clock.now = second
         assert made.postpones("shaft_torsion") is is_late
+        assert made.postpones("tip_relief", at_once=True)
     made.postpones("sensor_lowpass")
     clock.now = 260.0
     assert made.refuses("tooth_crack")
     assert made.refuses("sensor_lowpass")
-    made.asks_again(["shaft_torsion", "profile_error", "tooth_crack", "sensor_lowpass"])
+    made.asks_again(["shaft_torsion", "tip_relief", "profile_error", "tooth_crack", "sensor_lowpass"])
     assert made.not_tried == ["sensor_lowpass", "tooth_crack"]  # there was no time for these at all
 
 

@@ -75,12 +75,18 @@ def test_what_promises_too_little_to_spare_the_larger_one_is_fitted_after_it(pro
         (True, "torsion", 0.3, {}, False),  # a quarter of what the best took is as much as a rival takes
         (True, "torsion", 0.1, {"t": 1.0}, False),
         (True, "lowpass", 0.5, {}, True),  # another form of it came to nothing
+        (False, "torsion", 0.1, {"left": 0.7}, True),  # beside what takes nine tenths it could be no rival
+        (False, "torsion", 0.3, {"left": 0.7}, False),
+        (False, "torsion", 0.1, {"left": 0.7, "t": 1.0}, False),
     ],
 )
-def test_late_in_a_search_what_promises_little_beside_what_another_takes_waits(late, name, gain, more, waits):
-    fits = [fit(ECCENTRIC, 1.0, name="profile", **more), fit(ELSEWHERE, 7.99, name="lowpass", t=0.0)]
+def test_what_promises_little_beside_what_another_takes_waits_late_or_where_that_is_nearly_all(
+    late, name, gain, more, waits
+):
+    left = (more := dict(more)).pop("left", 1.0)
+    fits = [fit(ECCENTRIC, left, name="profile", **more), fit(ELSEWHERE, 7.99, name="lowpass", t=0.0)]
     fits[1].score.gain = 0.5
     asked = SimpleNamespace(candidate=SimpleNamespace(name=name, replaced=()), gain=gain)
     found = bench(SearchSettings())
-    found.budget.postpones = lambda what: late
+    found.budget.postpones = lambda what, at_once: late or at_once
     assert found._waits(asked, fits, 8.0) is waits

@@ -155,7 +155,7 @@ class Bench(Comparison):
         return tuple(sorted(fits, key=lambda fit: fit.outcome.left_out_cost))
 
     def _waits(self, score: Score, fits: Sequence[Refit], base: float) -> bool:
-        """Whether late in a search a candidate waits that promises little beside what another takes.
+        """Whether a candidate waits that promises little beside what another takes, late or where that is nearly all.
 
         It is asked for again beside that one, of whose part it may have been promised some. So does another form of an
         effect of which one came to little of its promise. Without a preload laws are far from linear, and what they
@@ -167,7 +167,7 @@ class Bench(Comparison):
         most = max((share for fit, share in taken if self._is_clear(fit)), default=0.0)
         forms = [share / fit.score.gain for fit, share in taken if fit.name == score.candidate.name]
         is_small = score.gain < LEAST_TAKEN * most or (most > 0 and min(forms, default=1.0) < LEAST_TAKEN)
-        return is_small and self.budget.postpones(score.candidate.name)
+        return is_small and self.budget.postpones(score.candidate.name, most >= self.settings.taken_by_all)
 
     def _is_clear(self, fit: Refit) -> bool:
         """Whether left-out records validate a fit, and nothing says that it stands in for another."""

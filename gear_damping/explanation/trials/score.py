@@ -21,6 +21,7 @@ from gear_damping.explanation.statistics.projector import Projector
 from gear_damping.explanation.statistics.tall import tall_svd
 from gear_damping.identification.output_error.problem import OutputErrorProblem, prepare_predictions
 from gear_damping.identification.output_error.records import DIFFERENCE, FreeParameter
+from gear_damping.physics.terms import Sensor
 from gear_damping.simulation.solver_settings import Solver
 
 PROBE = 0.05  # share of a strength's size that its slope is taken over
@@ -324,10 +325,18 @@ def _gain(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, ort
         project = project.with_nuisance(slopes[..., len(own) :])
         sizes = torch.nn.functional.pad(slopes[..., : len(own)].flatten(0, 1), (0, 0, 0, len(project.slope)))
         residual, orthogonal = project(base.residual.unsqueeze(1))[:, 0], project(torch.cat([orthogonal, sizes], 1))
+        if _is_filter(candidate) and float(residual @ orthogonal[:, 0]) <= 0:
+            return 0.0  # less than nothing of it would help: where another channel is late, a low-pass that leads
         # A difference far below the residual is the integrator's: no size that makes sense would lift it to that.
         orthogonal = orthogonal[:, orthogonal.norm(dim=0) > NEGLIGIBLE * residual.norm()]
     left = residual - orthogonal @ _coefficients(orthogonal, residual)
     return _share(base.orthogonal, left, base)
+
+
+def _is_filter(candidate: Candidate) -> bool:
+    """Whether it is a sensor with a memory, which does the more of the same the more there is of it."""
+    effect = candidate.hypothesis.effects[-1]
+    return isinstance(effect, Sensor) and effect.start_modes > 0
 
 
 def _slopes(problem: OutputErrorProblem, places: Sequence[int], states: Tensor, at: Tensor) -> Tensor:
