@@ -89,4 +89,4 @@ def test_what_promises_little_beside_what_another_takes_waits_late_or_where_that
     asked = SimpleNamespace(candidate=SimpleNamespace(name=name, replaced=()), gain=gain)
     found = bench(SearchSettings())
     found.budget.postpones = lambda what, at_once: late or at_once
-    assert found._waits(asked, fits, 8.0) is waits
+    assert found.waits(asked, fits, 8.0) is waits

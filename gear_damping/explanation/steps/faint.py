@@ -10,7 +10,7 @@ from dataclasses import replace
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.assess import Assessment
-from gear_damping.explanation.trials.bench import Bench
+from gear_damping.explanation.trials.bench import FEW, Bench
 from gear_damping.explanation.trials.refit import Refit, chosen
 from gear_damping.explanation.trials.score import Score, best_by_effect
 from gear_damping.physics.systems.traits import Trait
@@ -39,9 +39,7 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     may_differ = all(cause.candidate.own_levels for cause in state.accepted)  # beside a law another would differ too
     differing = [name for name in names if best[name].candidate.own_levels and may_differ]
     names = [name for name in names if best[name].gain > 0 and not best[name].candidate.own_levels]
-    names = [name for name in names if not bench.budget.refuses(name)]
-    found = (bench.full_fit(best[name], state.outcome, reach=state.outcome.fitted.cost) for name in names)
-    fits = [fit for fit in found if fit is not None]
+    fits = _fitted([best[name] for name in names], state)
     fits = [bench.converged(fit, state.outcome) if fit.gain > 0 else fit for fit in fits]
     fits = [fit for fit in fits if fit.name in foreseen or bench.takes_most(fit, state.outcome)]
     worth = [fit for fit in fits if _is_worth(fit, state.outcome, seen, bench)]
@@ -63,6 +61,17 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
         rivals = [fit for fit in (first, *rivals) if fit is not simpler[0]]
         first = simpler[0]
     return state, first, tuple(fit.name for fit in rivals)
+
+
+def _fitted(scores: Sequence[Score], state: State) -> list[Refit]:
+    """Full fits of effects as far as there is time, those of many numbers last."""
+    bench, cost, fits = state.bench, state.outcome.fitted.cost, []
+    for score in sorted(scores, key=lambda one: len(one.candidate.strengths) > FEW):
+        if bench.budget.refuses(score.candidate.name) or bench.waits(score, fits, cost):
+            continue
+        fit = bench.full_fit(score, state.outcome, reach=cost)
+        fits += [] if fit is None else [fit]
+    return fits
 
 
 def _of_records(scores: Sequence[Score], state: State) -> tuple[State, Refit | None, tuple[str, ...]]:

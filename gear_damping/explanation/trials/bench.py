@@ -140,7 +140,7 @@ class Bench(Comparison):
         largest = max((score.gain for score in worth), default=0.0)
         enough = self.settings.taken_by_one * largest
         for score in sorted(worth, key=lambda one: (one.gain < enough, len(one.candidate.strengths) > FEW, -one.gain)):
-            if any(self._is_enough(fit, score, base) for fit in fits) or self._waits(score, fits, base):
+            if any(self._is_enough(fit, score, base) for fit in fits) or self.waits(score, fits, base):
                 continue
             with self.budget.trying(is_first=not fits and not outcome.hypothesis.causes):
                 if self.budget.refuses(score.candidate.name):
@@ -154,7 +154,7 @@ class Bench(Comparison):
             fits += [] if fit is None else [fit]
         return tuple(sorted(fits, key=lambda fit: fit.outcome.left_out_cost))
 
-    def _waits(self, score: Score, fits: Sequence[Refit], base: float) -> bool:
+    def waits(self, score: Score, fits: Sequence[Refit], base: float) -> bool:
         """Whether a candidate waits that promises little beside what another takes, late or where that is nearly all.
 
         It is asked for again beside that one, of whose part it may have been promised some. So does another form of an

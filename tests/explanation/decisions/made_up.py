@@ -53,7 +53,7 @@ def scored(place: int, gain: float, direction: int | None = None) -> Scored:
     axis = torch.eye(len(NAMES), dtype=torch.float64)[place if direction is None else direction]
     hypothesis = SimpleNamespace(effects=[effect_class(NAMES[place])()], common=())
     known = {"options": (), "form": (), "non_nested": False, "replaced": (), "is_law": False, "own_levels": False}
-    known |= {"tells_teeth_apart": False}
+    known |= {"tells_teeth_apart": False, "strengths": (0,)}
     known |= {"hypothesis": hypothesis}
     return Scored(SimpleNamespace(name=NAMES[place], **known), gain, axis, axis[:, None])
 
