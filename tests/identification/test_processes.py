@@ -13,7 +13,7 @@ from gear_damping.identification.protocols import BY_RUN
 from gear_damping.identification.runs import RunSet
 from gear_damping.identification.trainer import Place, Training, fit_estimator
 
-TRAINING = Training(max_epochs=6, batch_size=64, learning_rate=0.005)
+TRAINING = Training(max_epochs=12, batch_size=64, learning_rate=0.005)
 
 
 def windows():
