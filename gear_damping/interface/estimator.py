@@ -192,9 +192,9 @@ def _turning(record: FitRecord, values: Mapping[str, float]) -> Turning | None:
     teeth = teeth_of(values)
     if "pinion_angle" in record.inputs:
         return Turning(teeth[0] * record.inputs["pinion_angle"].numpy(), teeth)
-    speed, count = record.conditions.get("pinion_speed"), len(record.response)
-    ends = (0.0, count - 1.0) if record.stamps is None else (float(record.stamps[0]), float(record.stamps[-1]))
-    return Turning(teeth[0] * speed / record.sampling_rate * np.linspace(*ends, count), teeth) if speed else None
+    speed, ends = record.conditions.get("pinion_speed"), record.instants[[0, -1]].tolist()
+    even = np.linspace(*ends, len(record.response))
+    return Turning(teeth[0] * speed / record.sampling_rate * even, teeth) if speed else None
 
 
 def estimator(

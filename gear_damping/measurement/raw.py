@@ -106,16 +106,20 @@ class RawReader:
 
     def _worked_out(self, channels: Sequence[RawChannel], base: TimeBase) -> Iterator[Finding]:
         """Notes of motions of an oscillator that are slopes of other columns."""
-        stamps = [] if self.plan.timing.column is None else [self.table.index(self.plan.timing.column, "")]
+        rates = [one for one in channels if OSCILLATOR_CHANNELS.get(one.plan.name)]
+        rates = [one for one in rates if one.own_time is None and "mounting" not in one.plan.sensor]
+        if not rates or not base.uniform:
+            return
         read: dict[int, NDArray[np.float64]] = {}
-        motions = [one for one in channels if one.own_time is None and "mounting" not in one.plan.sensor]
-        for motion in motions if base.uniform else ():
-            own = self.table.index(motion.plan.column, "")
-            for place in range(len(self.table.names))[:_LOOKED_AT] if OSCILLATOR_CHANNELS.get(motion.plan.name) else ():
-                with suppress(InputError):  # what has gaps is the slope of nothing
-                    read.setdefault(place, self.sliced(place, ""))
-            others = [(self.table.names[k] or str(k), v) for k, v in read.items() if k not in (own, *stamps)]
-            yield from worked_out(motion.plan.name, motion.values, base.time, others)
+        for place in range(len(self.table.names))[:_LOOKED_AT]:
+            with suppress(InputError):  # what has gaps is the slope of nothing
+                read[place] = self.sliced(place, "")
+        if self.plan.timing.column is not None:
+            read.pop(self.table.index(self.plan.timing.column, ""), None)
+        for rate in rates:
+            own = self.table.index(rate.plan.column, "")
+            others = [(self.table.names[k] or str(k), values) for k, values in read.items() if k != own]
+            yield from worked_out(rate.plan.name, rate.values, base.time, others)
 
     def _with_unit(self, plan: EncoderPlan) -> EncoderPlan:
         """An encoder with the unit of its column: as declared, else that of the file, else s of times and V."""

@@ -1,7 +1,7 @@
 """Which column of a file holds the time stamps, and in what unit."""
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -96,9 +96,9 @@ def find_stamps(columns: Sequence[_Column], untimed: bool = False) -> Stamps | N
     """
     for by in (_by_unit, _by_name, _behind_row_numbers(columns), _by_steps, _by_ramp, _by_epoch):
         seen = ((index, by(index, one)) for index, one in enumerate(columns) if one.inside.size >= FEWEST_STAMPS)
-        found = [Stamps(index, *_unit(columns[index]), says) for index, says in seen if says]
-        if found:
-            return _running_through(columns, found)
+        found = (Stamps(index, *_unit(columns[index]), says) for index, says in seen if says)
+        if first := next(found, None):
+            return _running_through(columns, first, found)
     telling = [k for k, one in enumerate(columns) if one.inside.size >= FEWEST_STAMPS and not counts_rows(one.inside)]
     if not untimed or not telling:
         return None
@@ -110,10 +110,12 @@ def find_stamps(columns: Sequence[_Column], untimed: bool = False) -> Stamps | N
     return Stamps(steady[0], *_unit(columns[steady[0]]), "goes on by the same whole number in nearly all rows")
 
 
-def _running_through(columns: Sequence[_Column], found: Sequence[Stamps]) -> Stamps:
+def _running_through(columns: Sequence[_Column], first: Stamps, others: Iterable[Stamps]) -> Stamps:
     """The first of some clocks; where it starts again and others run on through as many rows, the first of those."""
-    begun = columns[found[0].index].inside
-    return next((one for one in found[1:] if runs_through(columns[one.index].inside, begun)), found[0])
+    begun = columns[first.index].inside
+    if len(recordings(begun)) < 2:
+        return first
+    return next((one for one in others if runs_through(columns[one.index].inside, begun)), first)
 
 
 def runs_through(stamps: NDArray[np.float64], other: NDArray[np.float64]) -> bool:

@@ -9,6 +9,7 @@ import torch
 
 from gear_damping.explanation.evidence.excess import Excess
 from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.fitting import fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.explanation.settings import SearchSettings
@@ -60,47 +61,39 @@ def test_what_is_there_is_told_and_what_is_not_is_not(cubic, expected):
 @pytest.mark.parametrize(("cubic", "expected"), [(4.0, False), (0.0, True)])
 def test_a_cause_of_which_no_figure_is_known_within_itself_is_any(cubic, expected):
     outcome, _, evidence = fitted(cubic, ("cubic_stiffness.coefficient",))
-    assert without_a_figure(outcome, ["cubic_stiffness"], evidence) == ("cubic_stiffness" if expected else "")
-    assert without_a_figure(outcome, ["backlash"], evidence) == ""  # without figures there is nothing to know
+    known = covariance_of(outcome, evidence)
+    assert without_a_figure(outcome, ["cubic_stiffness"], known, evidence) == ("cubic_stiffness" if expected else "")
+    assert without_a_figure(outcome, ["backlash"], known, evidence) == ""  # without figures there is nothing to know
 
 
-@pytest.mark.parametrize(("moved", "expected"), [(1e3, "backlash"), (0.0, "")])
-def test_a_size_that_moves_nothing_bends_to_nothing(moved, expected, monkeypatch):
-    """A gap that flanks part in without ever touching its far side: it is there, however wide it is."""
-    gap = FreeParameter("backlash.gap", 1e-4, logarithmic=True)
-    sensitivity = torch.full((1, 1, 4, 1), moved * NOISE, dtype=torch.float64)
-    outcome = SimpleNamespace(
-        problem=SimpleNamespace(free=[gap]),
-        fitted=SimpleNamespace(shared=torch.zeros(1), prediction=SimpleNamespace(sensitivity=sensitivity)),
-    )
-    covariances = torch.full((1, 1), 1e4, dtype=torch.float64)
-    monkeypatch.setattr("gear_damping.explanation.trials.told_size.covariance_of", lambda *_: covariances)
-    assert without_a_figure(outcome, ["backlash"], SimpleNamespace(noise=NOISE)) == expected
-
-
-def outcome_of(parameters):
-    sensitivity = torch.full((1, 1, 4, len(parameters)), 1e3 * NOISE, dtype=torch.float64)
+def outcome_of(parameters, moved=1e3):
+    """A fit that stands at 0, of which every parameter moves a record of four samples as much."""
+    sensitivity = torch.full((1, 1, 4, len(parameters)), moved * NOISE, dtype=torch.float64)
     prediction = SimpleNamespace(sensitivity=sensitivity)
     fitted = SimpleNamespace(shared=torch.zeros(len(parameters)).double(), prediction=prediction)
     return SimpleNamespace(problem=SimpleNamespace(free=parameters), fitted=fitted)
 
 
+@pytest.mark.parametrize(("moved", "expected"), [(1e3, "backlash"), (0.0, "")])
+def test_a_size_that_moves_nothing_bends_to_nothing(moved, expected):
+    """A gap that flanks part in without ever touching its far side: it is there, however wide it is."""
+    outcome = outcome_of([FreeParameter("backlash.gap", 1e-4, logarithmic=True)], moved)
+    covariances = torch.full((1, 1), 1e4, dtype=torch.float64)
+    assert without_a_figure(outcome, ["backlash"], covariances, SimpleNamespace(noise=NOISE)) == expected
+
+
 @pytest.mark.parametrize(("phases", "expected"), [((), ""), (("profile_error.phases[0]",), "profile_error")])
-def test_from_where_an_angle_counts_is_no_size(phases, expected, monkeypatch):
+def test_from_where_an_angle_counts_is_no_size(phases, expected):
     size, angle = FreeParameter("profile_error.amplitudes[0]", 1e-8), FreeParameter("profile_error.phases[0]", 1.5)
-    covariances = torch.diag(torch.tensor([1.0, 0.1], dtype=torch.float64))
-    monkeypatch.setattr("gear_damping.explanation.trials.told_size.covariance_of", lambda *_: covariances)
-    evidence = SimpleNamespace(noise=NOISE)
-    assert without_a_figure(outcome_of([size, angle]), ["profile_error"], evidence, phases) == expected
+    known, evidence = torch.diag(torch.tensor([1.0, 0.1], dtype=torch.float64)), SimpleNamespace(noise=NOISE)
+    assert without_a_figure(outcome_of([size, angle]), ["profile_error"], known, evidence, phases) == expected
 
 
 @pytest.mark.parametrize(("scatter", "expected"), [(1.0, ""), (1e4, "profile_error")])
-def test_a_figure_is_known_as_well_as_it_is_said_to_be(scatter, expected, monkeypatch):
+def test_a_figure_is_known_as_well_as_it_is_said_to_be(scatter, expected):
     size = FreeParameter("profile_error.amplitudes[0]", 1.0)
-    covariances = torch.full((1, 1), 0.04, dtype=torch.float64)
-    monkeypatch.setattr("gear_damping.explanation.trials.told_size.covariance_of", lambda *_: covariances)
-    evidence, known = SimpleNamespace(noise=NOISE), lambda found, _: scatter * found
-    assert without_a_figure(outcome_of([size]), ["profile_error"], evidence, known=known) == expected
+    known = scatter * torch.full((1, 1), 0.04, dtype=torch.float64)
+    assert without_a_figure(outcome_of([size]), ["profile_error"], known, SimpleNamespace(noise=NOISE)) == expected
 
 
 def test_what_the_viscous_damping_does_already_is_told_of_no_other_law():

@@ -17,7 +17,7 @@ from gear_damping.explanation.answer.stand_in import (
 )
 from gear_damping.explanation.evidence.excess import excess
 from gear_damping.explanation.model.contradicted import contradicts_stated
-from gear_damping.explanation.model.covariance import wider_of_both
+from gear_damping.explanation.model.covariance import covariance_of, wider_of_both
 from gear_damping.explanation.model.homogeneity import homogeneity
 from gear_damping.explanation.model.own_phases import own_levels
 from gear_damping.explanation.model.positive import positive
@@ -150,11 +150,14 @@ def _of_no_figure(state: State) -> tuple[str, str]:
     """A cause of which not one size is known within itself, by the noise and by the scatter between records."""
     outcome, evidence = state.outcome, state.bench.evidence
     names = [cause.name for cause in state.accepted]
+    if not names:
+        return "", ""
     phases = {name for cause in state.accepted for name in cause.candidate.names_of_phases}
-    unknown = without_a_figure(outcome, names, evidence, phases)
-    if unknown or not names or own_levels(outcome):  # where a cause says that records differ, they need not agree
+    covariances = covariance_of(outcome, evidence)
+    unknown = without_a_figure(outcome, names, covariances, evidence, phases)
+    if unknown or own_levels(outcome):  # where a cause says that records differ, they need not agree
         return unknown, unknown
-    return "", without_a_figure(outcome, names, evidence, phases, wider_of_both)
+    return "", without_a_figure(outcome, names, wider_of_both(covariances, outcome), evidence, phases)
 
 
 def _not_random(state: State) -> float:

@@ -10,7 +10,7 @@ from dataclasses import replace
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.assess import Assessment
-from gear_damping.explanation.trials.bench import FEW, Bench
+from gear_damping.explanation.trials.bench import Bench, has_many
 from gear_damping.explanation.trials.refit import Refit, chosen
 from gear_damping.explanation.trials.score import Score, best_by_effect
 from gear_damping.physics.systems.traits import Trait
@@ -66,7 +66,7 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
 def _fitted(scores: Sequence[Score], state: State) -> list[Refit]:
     """Full fits of effects as far as there is time, those of many numbers last."""
     bench, cost, fits = state.bench, state.outcome.fitted.cost, []
-    for score in sorted(scores, key=lambda one: len(one.candidate.strengths) > FEW):
+    for score in sorted(scores, key=has_many):
         if bench.budget.refuses(score.candidate.name) or bench.waits(score, fits, cost):
             continue
         fit = bench.full_fit(score, state.outcome, reach=cost)

@@ -228,12 +228,8 @@ def _is_part_named(found: State, share: float, after: Excess, known: Known) -> b
     What has another size in other records, or any size, or has run into the end of what it can be, stands in for
     something else, however much it takes.
     """
-    if (
-        known.is_one is False
-        or known.any_figures
-        or known.scattered
-        or any(found.is_at_bound(cause) for cause in found.accepted)
-    ):
+    is_of_any_size = known.is_one is False or known.any_figures or known.scattered
+    if is_of_any_size or any(found.is_at_bound(cause) for cause in found.accepted):
         return False
     settings = found.bench.settings
     nobody_knows = known.is_one is None and known.of_fit >= settings.taken_by_all  # but nearly all of one record

@@ -139,7 +139,7 @@ class Bench(Comparison):
         worth = chosen(ranked, self.settings, predicted_gain, laws=self.evidence.has(Trait.REST))
         largest = max((score.gain for score in worth), default=0.0)
         enough = self.settings.taken_by_one * largest
-        for score in sorted(worth, key=lambda one: (one.gain < enough, len(one.candidate.strengths) > FEW, -one.gain)):
+        for score in sorted(worth, key=lambda one: (one.gain < enough, has_many(one), -one.gain)):
             if any(self._is_enough(fit, score, base) for fit in fits) or self.waits(score, fits, base):
                 continue
             with self.budget.trying(is_first=not fits and not outcome.hypothesis.causes):
@@ -322,6 +322,11 @@ class Bench(Comparison):
         near = [fit for fit in others if fit.gain >= self.settings.rival_share * first.gain]
         close = [fit for fit in others if self.excess(fit.outcome).misfit <= self.settings.settled_misfit]
         return smallest([fit for fit in close or near if self._is_sized(fit)] or [first])
+
+
+def has_many(score: Score) -> bool:
+    """Whether an effect has many numbers, as an error of every tooth, whose fit takes long."""
+    return len(score.candidate.strengths) > FEW
 
 
 def smallest(fits: Sequence[Refit]) -> Refit:

@@ -81,9 +81,8 @@ def known_error(record: FitRecord, outcome: Outcome) -> KnownError | None:
         return None
     errors = [factors[name] ** 2 * error.numpy() for name, error in record.input_errors.items()]
     seen, interval = Linear(mass, damping, stiffness, record.observed.derivatives), 1 / record.sampling_rate
-    stamps = torch.arange(len(record.response)) if record.stamps is None else record.stamps
     motion, step = moved_by(record.weight**2 * sum(errors), seen, interval)
-    return KnownError(interval * stamps.double().numpy(), motion, step, problem.noise**2)
+    return KnownError(interval * record.instants.numpy(), motion, step, problem.noise**2)
 
 
 def _is_one_motion(problem: OutputErrorProblem) -> bool:

@@ -3,7 +3,7 @@
 A law that bends to what another leaves may lower the cost while its own size is anybody's guess.
 """
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 
 import torch
 from scipy.stats import chi2
@@ -62,11 +62,7 @@ def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
 
 
 def without_a_figure(
-    outcome: Outcome,
-    names: Sequence[str],
-    evidence: Evidence,
-    phases: Collection[str] = (),
-    known: Callable[[Tensor, Outcome], Tensor] = lambda covariances, _: covariances,
+    outcome: Outcome, names: Sequence[str], covariances: Tensor, evidence: Evidence, phases: Collection[str] = ()
 ) -> str:
     """The first of several causes that has figures and not one of them known within itself; empty where none has.
 
@@ -76,14 +72,12 @@ def without_a_figure(
     Args:
         outcome: The model with the causes.
         names: The causes.
+        covariances: How well its coordinates are known.
         evidence: The records.
         phases: Names of what is no size: from where an angle counts is anybody's choice.
-        known: How well coordinates are known, from their covariance by the noise.
     """
-    if not names:
-        return ""
     free, shared = outcome.problem.free, outcome.fitted.shared
-    half = QUANTILE * known(covariance_of(outcome, evidence), outcome).diagonal().clamp(min=0).sqrt()
+    half = QUANTILE * covariances.diagonal().clamp(min=0).sqrt()
 
     def is_known(i: int) -> bool:
         within = WITHIN if free[i].logarithmic else abs(float(free[i].value(shared[i]))) / free[i].scale

@@ -149,9 +149,8 @@ def _values(record: FitRecord, channel: Observed, values: Tensor) -> Tensor:
 
 def _weights(record: FitRecord, channel: Observed, values: Tensor) -> Tensor:
     """What the record counts; nothing of what a late channel shows from before its beginning."""
-    positions = record.instants
     late = channel.delay * record.sampling_rate
-    return record.weight * ((positions >= late) & (positions - late <= len(values) - 1)).double()
+    return record.weight * ((record.instants >= late) & (record.instants - late <= len(values) - 1)).double()
 
 
 def _between(shown: Tensor, places: Sequence[Places]) -> Tensor:

@@ -104,7 +104,7 @@ class Text:
 def _with_clocks_apart(text: bytes) -> bytes:
     """Lines behind a clock and an arrow, as Arduino's serial monitor shows them, with the clock as a cell of its own.
 
-    Beside names it is `clock`. So is what stands behind the clock of Python's logging, whose comma parts no cells.
+    Beside names it is `clock`. The clock of Python's logging, whose comma parts no cells, is one too.
     """
     last = text.rstrip()[-_LONG:].split(b"\n")[-1]
     if found := _LOGGED.match(last):
