@@ -147,7 +147,9 @@ def _driven_flank(record: FitRecord) -> Tensor:
 
 def _stated(record: FitRecord, name: str) -> Tensor:
     """A torque as it was measured or is stated, of every sample; 0 where it is neither."""
-    return record.inputs.get(name, torch.full_like(record.response, record.conditions.get(name, 0.0)))
+    if name in record.inputs:
+        return record.at_samples(name)
+    return torch.full_like(record.response, record.conditions.get(name, 0.0))
 
 
 def with_parting_flanks(evidence: Evidence, harmonics: int, solver: Solver | None) -> Outcome | None:

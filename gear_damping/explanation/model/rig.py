@@ -187,11 +187,11 @@ def _by_angle(record: FitRecord, left: Tensor, teeth: int, speed: float) -> tupl
 
 
 def shaft_angle(record: FitRecord, speed: float) -> Tensor:
-    """Angle of the pinion in rad, (time,): as measured, or at the record's constant speed."""
+    """Angle of the pinion in rad at the samples, (time,): as measured, or at the record's constant speed."""
     if "pinion_angle" in record.inputs:
-        return record.inputs["pinion_angle"]
+        return record.at_samples("pinion_angle")
     speed = float(record.conditions.get("pinion_speed", speed))
-    return speed / record.sampling_rate * torch.arange(len(record.response), dtype=torch.float64)
+    return speed / record.sampling_rate * record.instants
 
 
 def _waves(angle: Tensor, orders: Sequence[float]) -> Tensor:

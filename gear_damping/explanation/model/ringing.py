@@ -81,12 +81,12 @@ def _is_told(record: FitRecord, left: Array, turning: Turning, natural: float) -
 def _turning(record: FitRecord, outcome: Outcome, evidence: Evidence) -> Turning:
     teeth = teeth_of(evidence.parameters)
     if "pinion_angle" in record.inputs:
-        return Turning(teeth[0] * record.inputs["pinion_angle"].numpy(), teeth)
+        return Turning(teeth[0] * record.at_samples("pinion_angle").numpy(), teeth)
     names = ("pinion_speed", "pinion_acceleration", "pinion_jerk")
     stated = [record.conditions.get(name, 0.0) for name in names]
     pairs = zip(names, stated, strict=True)
     known = {name: outcome.values.get(f"{name}{SEPARATOR}{record.name}", one) for name, one in pairs}
-    time = torch.arange(len(record.response), dtype=torch.float64) / record.sampling_rate
+    time = record.instants / record.sampling_rate
     return Turning(teeth[0] * turned(known | {"pinion_angle": 0.0}, time)[0].numpy(), teeth)
 
 
