@@ -16,7 +16,10 @@ NAMED_UNITS = {  # by the last word of a name in lower case; neither `in` nor `m
     "mps": "m/s", "mmps": "mm/s", "kmh": "km/h", "kmph": "km/h", "kph": "km/h", "ips": "in/s",
     "dps": "deg/s", "rps": "rev/s", "mg": "mg", "ms2": "m/s^2", "ms-2": "m/s^2", "ms^-2": "m/s^2",
     "mmps2": "mm/s^2", "knm": "kN*m", "ncm": "N*cm", "nmm": "N*mm", "millivolt": "mV", "millivolts": "mV",
+    "lbf": "lbf", "kgf": "kgf", "krpm": "krpm", "radps": "rad/s", "mph": "mph", "knots": "knot", "turns": "rev",
+    "feet": "ft", "meters": "m", "metres": "m",
 }  # fmt: skip
+_CASED = {"kN": "kN", "daN": "daN", "mNm": "mN*m", "MNm": "MN*m"}  # whose capitals tell a prefix
 _TIMES = {  # the same of time, in six languages, without what also names any clock: `time of day`, `time tag`, `hora`
     "s": "s sec secs second seconds sek sekunde sekunden seconde secondes segundo segundos secondi",
     "ms": "ms msec msecs msek millis millisec millisecond milliseconds millisekunde millisekunden milliseconde "
@@ -32,8 +35,12 @@ TIME_UNITS = {word: unit for unit, words in _TIMES.items() for word in words.spl
 _OVER = {"s": "s", "s2": "s^2", "s^2": "s^2", "sec": "s", "sec2": "s^2"}  # the last word of a rate, `deg_s`
 _MOVED = ("mm", "um", "cm", "m", "deg", "rad", "mrad", "rev")  # the word before it
 _PAIRS = {
-    ("N", "m"): "N*m", ("N", "mm"): "N*mm", ("kN", "m"): "kN*m", ("km", "h"): "km/h", ("rev", "min"): "rpm",
+    ("N", "m"): "N*m", ("N", "mm"): "N*mm", ("N", "cm"): "N*cm", ("mN", "m"): "mN*m",
+    ("kN", "m"): "kN*m", ("km", "h"): "km/h", ("rev", "min"): "rpm",
 }  # fmt: skip
+_WEIGHTS = {"lbf": "lbf", "lb": "lbf", "lbs": "lbf", "ozf": "ozf", "oz": "ozf"}  # times a lever: a torque
+_LEVERS = ("in", "ft")
+_WEIGHT_OF_LEVER = re.compile(r"^(?:(lbf|lbs?|ozf?)(in|ft)|(in|ft)(lbf|lbs?|ozf?))$")  # in one word, `inlb`
 _COMPOUND = re.compile(r"(?:^|[\s_.\-])(?P<unit>1/min|(?:[^\W\d_]|°)+[/*·][^\s_]+)\s*$")  # `acc_m/s^2`, `n 1/min`
 _OF_CHANNELS = ("m/s", "m/s^2", "rad/s", "rad/s^2", "N*m")  # others may be a symbol over its unit: `F_t/N` in tonnes
 _BETWEEN = re.compile(r"[_\s/.\[\](]+")
@@ -58,7 +65,7 @@ def unit_at_end(reference: str | int) -> str | None:
     words = _words(name)
     if not words or (words[-1].endswith("Rad") and (words == ["Rad"] or _WHEEL.search(name))):
         return None
-    return _of_two_words(words) or ("kN" if words[-1] == "kN" else _unit_in(words[-1], NAMED_UNITS))
+    return _of_two_words(words) or _torque(words) or _CASED.get(words[-1]) or _unit_in(words[-1], NAMED_UNITS)
 
 
 def gravity_at_end(reference: str | int) -> bool:
@@ -84,6 +91,14 @@ def _of_two_words(words: Sequence[str]) -> str | None:
         return pair
     is_symbol = len(above) == 1 and len(words) == 2  # `m_s` alone, a mass
     return f"{above.lower()}/{_OVER[below]}" if above.lower() in _MOVED and below in _OVER and not is_symbol else None
+
+
+def _torque(words: Sequence[str]) -> str | None:
+    """The torque of a name that ends in a weight and a lever, in either order: `T_lbf_in`, `torque_ftlb`."""
+    joined = _WEIGHT_OF_LEVER.match(words[-1].lower())
+    last = [part for part in joined.groups() if part] if joined else [word.lower() for word in words[-2:]]
+    orders = (last, last[::-1]) if len(last) == 2 else ()
+    return next((f"{_WEIGHTS[a]}*{b}" for a, b in orders if a in _WEIGHTS and b in _LEVERS), None)
 
 
 def _unit_in(word: str, units: Mapping[str, str]) -> str | None:

@@ -65,7 +65,12 @@ CHANNELS = {  # the name, the unit that is declared and the channel
     "x_mV": ("V", "displacement"), "v_kmh": ("m/s", "velocity"), "v_kmph": ("m/s", "velocity"),
     "v_mm_s": ("m/s", "velocity"), "v_mmps": ("m/s", "velocity"), "gyro_dps": ("rad/s", "velocity"),
     "gyro_deg_per_s": ("rad/s", "velocity"), "omega_rpm": ("rad/s", "velocity"), "acc_mg": ("g", "acceleration"),
-    "acc_ms2": ("g", "acceleration"), "a_mm_s2": ("m/s^2", "acceleration"),
+    "acc_ms2": ("g", "acceleration"), "a_mm_s2": ("m/s^2", "acceleration"), "x_meters": ("mm", "displacement"),
+    "torque_lbf_in": ("N*m", "displacement"), "torque_ftlb": ("N*m", "displacement"),
+    "T_in_oz": ("N*m", "displacement"),
+    "T_mNm": ("N*m", "displacement"), "torque_N_cm": ("N*m", "displacement"), "force_lbf": ("N", "displacement"),
+    "force_daN": ("N", "displacement"), "omega_radps": ("rpm", "velocity"), "speed_krpm": ("rpm", "velocity"),
+    "v_mph": ("m/s", "velocity"), "angle_turns": ("deg", "displacement"),
 }  # fmt: skip
 
 
@@ -138,6 +143,8 @@ def test_a_g_behind_an_acceleration_may_be_one_and_is_a_note(name, tmp_path):
     [
         ("T_N_m", "N*m"), ("M_kNm", "kN*m"), ("F_kN", "kN"), ("speed_kn", None), ("pos_mm_min", None),
         ("n_rev_min", "rpm"), ("v_m_s", "m/s"), ("m_s", None), ("mm_s", "mm/s"), ("acc_ms-2", "m/s^2"),
+        ("torque_lbf_in", "lbf*in"), ("T_ft_lb", "lbf*ft"), ("torque_ozin", "ozf*in"), ("T_MNm", "MN*m"),
+        ("zoo_in", None), ("oz", None), ("torque_meter", None), ("x_lb", None),
         ("speedRPM", "rpm"), ("xRMS", None), ("mm_x", "mm"), ("", None), (3, None),
     ],
 )  # fmt: skip
