@@ -147,6 +147,11 @@ _FACTOR = re.compile(r"^(?P<atom>[A-Za-z%]+|1)((\^(?P<power>-?\d+(\.\d+)?))|(?P<
 
 
 LEVEL = "dB"  # a logarithm, which is no number of anything
+# Of a sensor, what it gives for one unit, `100 mV/g` or `16384 LSB/g`, or how much one volt is, `125 mm/s/V`.
+_SENSITIVITY = re.compile(
+    rf"(?:\d[\d.,]*\s*)?(?:(?:mV|V|pC|{'|'.join(one for one in _COUNTED if one.isalpha())})\s*/\s*(?P<below>\D.*)"
+    r"|(?P<above>[^\W\d].*?)\s*/\s*(?:mV|V))", re.I,
+)  # fmt: skip
 DIGITS = 12  # of a converted number: 0.12 mm are 120 um, not 120.00000000000001
 # What a key may end in, and the unit that its plain number is in.
 SUFFIXES = {"rpm": "rpm", "deg": "deg", "um": "um", "mm": "mm", "ms": "ms", "khz": "kHz", "hz": "Hz", "percent": "%"}
@@ -277,6 +282,11 @@ def _parse_factor(piece: str, text: str, key: str, source: str) -> tuple[Unit, f
 
 def _unknown(piece: str, name: str, text: str, key: str, source: str) -> Problem:
     """What is said of a factor `piece` of a text, whose letters are `name`, that is no unit."""
+    sensor = _SENSITIVITY.fullmatch(text.strip())
+    if sensor and not is_of_kind(sensor["below"], "s"):  # counts by the second are a rate
+        of = (sensor["below"] or sensor["above"]).strip("() ")
+        remedy = f"write unit: {of}, and gain: what the column holds for one {of}, by which values are divided"
+        return Problem(key, f"'{text}' is the sensitivity of a sensor, and no unit of its signal", None, remedy, source)
     if piece.lower() in _COUNTED:
         remedy = f"write '{text.strip().replace(piece, '1')}'"
         return Problem(key, f"'{piece}' has no unit here: it is a plain number", remedy=remedy, source=source)

@@ -1,5 +1,7 @@
 """What the header or the name of a column says of its unit, against the one that was declared."""
 
+import re
+
 from gear_damping.errors import InputError
 from gear_damping.measurement.angular_error import is_angular_acceleration
 from gear_damping.measurement.declared_units import Conversion
@@ -8,7 +10,13 @@ from gear_damping.measurement.formats.header import is_among_words
 from gear_damping.measurement.named_units import gravity_at_end, unit_at_end
 from gear_damping.measurement.raw import SAME_UNIT, RawChannel, RawRecord
 from gear_damping.measurement.record import Finding
-from gear_damping.units import Unit, multiple_of_a_unit, of_a_shaft, parse_unit, scaled_unit
+from gear_damping.units import Unit, is_of_kind, multiple_of_a_unit, of_a_shaft, parse_unit, scaled_unit
+
+# What a sensor gives for one unit, `100 mV/g`, or how much one volt is, `125 mm/s/V`.
+_SENSITIVITY = re.compile(
+    r"(?:\d[\d.,]*\s*)?(?:(?:mV|V|pC)/\(?(?P<below>[^\W\d][^()\[\]\s]*)|(?P<above>[^\W\d_][^()\[\]\s]*)/(?:mV|V)(?!\w))"
+)
+_IN_BRACKETS = re.compile(r"[(\[]([^()\[\]]*)[)\]]")
 
 
 def unit_conflict(raw: RawChannel, record: RawRecord, conversion: Conversion) -> Finding | None:
@@ -16,6 +24,8 @@ def unit_conflict(raw: RawChannel, record: RawRecord, conversion: Conversion) ->
     said = raw.plan.stated_unit or raw.unit
     stated = parse_unit(said)
     name = record.table.names[record.table.index(raw.plan.column, raw.plan.key)]
+    if not raw.plan.is_scaled and (sensitivity := _sensitivity_in(name, said)):
+        return _sensitivity_conflict(raw, said, sensitivity)
     if raw.header_unit is None:
         return None if raw.plan.is_scaled else _name_conflict(raw, name, said, stated)
     if raw.header_unit == said:
@@ -25,7 +35,7 @@ def unit_conflict(raw: RawChannel, record: RawRecord, conversion: Conversion) ->
     if scaled_unit(raw.header_unit):
         return None if raw.plan.is_scaled else _factor_unsaid(raw, said)
     try:
-        header = of_a_shaft(parse_unit(raw.header_unit), stated)
+        header, stated = _by_the_minute(parse_unit(raw.header_unit), stated)
     except InputError:
         return None if raw.plan.is_scaled else _among_words(raw, said, stated)
     is_other = header.dimension != stated.dimension
@@ -48,6 +58,28 @@ def unit_conflict(raw: RawChannel, record: RawRecord, conversion: Conversion) ->
     elif has_words:
         message += f", or write gain: 1 where '{raw.header_unit}' in the header is not its unit"
     return Finding("unit_conflict", message, channel=raw.plan.name)
+
+
+def _sensitivity_in(name: str, said: str) -> str | None:
+    """The sensitivity of a sensor in a header that says no unit of the kind of the declared one beside it."""
+    found = _SENSITIVITY.search(name)
+    if found is None or any(is_of_kind(text, said) for text in _IN_BRACKETS.findall(name.replace(found[0], ""))):
+        return None
+    return found[0] if is_of_kind(found["below"] or found["above"], said) else None
+
+
+def _sensitivity_conflict(raw: RawChannel, said: str, sensitivity: str) -> Finding:
+    """The header says how many volts one unit is, `100 mV/g`, and the YAML that the column is in that unit."""
+    message = (
+        f"the header of column '{raw.plan.column}' says '{sensitivity}', the sensitivity of a sensor, and the YAML "
+        f"'{said}', which was used; write gain: what the column holds for one {said}, or gain: 1 where it is in {said}"
+    )
+    return Finding("unit_conflict", message, channel=raw.plan.name)
+
+
+def _by_the_minute(header: Unit, stated: Unit) -> tuple[Unit, Unit]:
+    """Both units, where one is `1/min` and the other one of the speed of a shaft that one as turns by the minute."""
+    return of_a_shaft(header, stated), of_a_shaft(stated, header)
 
 
 def _step_conflict(raw: RawChannel, said: str, number: float, unit: Unit) -> Finding | None:
@@ -78,9 +110,9 @@ def _name_conflict(raw: RawChannel, name: str, said: str, stated: Unit) -> Findi
     named = unit_at_end(name)
     if named is None and gravity_at_end(name):
         return _may_be_gravity(raw, name, said, stated)
-    own = None if named is None else of_a_shaft(parse_unit(named), stated)
-    if own is None:
+    if named is None:
         return None
+    own, stated = _by_the_minute(parse_unit(named), stated)
     if own.dimension != stated.dimension:
         return _named_otherwise(raw, name, named, said)
     if abs(own.factor / stated.factor - 1) < SAME_UNIT:

@@ -1,0 +1,67 @@
+"""Files and declarations as the users of a test bench write them: what was read wrongly, or answered with no cure."""
+
+import numpy as np
+import pytest
+
+from gear_damping.errors import InputError
+from gear_damping.measurement.load import load_measurement
+from gear_damping.units import parse_unit
+
+SECONDS = np.arange(400) * 0.002
+MOTION = np.exp(-1.5 * SECONDS) * np.cos(75 * SECONDS)
+
+
+def loaded(folder, header: str, channel: str, more: str = ""):
+    """The record of a table of a clock and a motion under a header, declared as `channel` says."""
+    rows = "\n".join(f"{t:.3f};{x:.6f}" for t, x in zip(SECONDS, MOTION, strict=True))
+    (folder / "a.csv").write_text(f"t;{header}\n{rows}\n", encoding="utf-8")
+    (folder / "m.yaml").write_text(
+        f"system: oscillator\nrecords:\n  - file: a.csv\n    channels:\n      time: {{column: t, unit: s}}\n"
+        f"      displacement: {{column: 1, {channel}}}\n{more}",
+        encoding="utf-8",
+    )
+    return load_measurement(folder / "m.yaml").records[0]
+
+
+def conflicts(record) -> list[str]:
+    return [one.message for one in record.findings if one.kind == "unit_conflict"]
+
+
+@pytest.mark.parametrize("declared", ["1/min", "min^-1", "min⁻¹"])
+@pytest.mark.parametrize("header", ["Drehzahl [U/min]", "n_rpm"])
+def test_turns_by_the_minute_contradict_no_speed_of_a_shaft_by_the_minute(bench, header, declared):
+    bench.columns[header] = np.full(400, 1800.0) + np.sin(SECONDS)
+    bench.channels["pinion_speed"] = {"column": header, "unit": declared}
+    record = bench.load().records[0]
+    assert conflicts(record) == []
+    assert np.mean(record.channels["pinion_speed"].values) == pytest.approx(188.5, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("header", "unit"),
+    [
+        ("Voltage [V] (125 mm/s/V)", "mm/s"), ("Acc (100 mV/g)", "g"), ("Acc (100 mV/g)", "m/s^2"),
+        ("a [10.2 mV/m/s^2]", "m/s^2"), ("Kraft (50 N/V)", "N"), ("F (5 pC/N)", "N"),
+    ],
+)  # fmt: skip
+def test_the_sensitivity_of_a_sensor_in_a_header_is_no_unit_of_its_column(tmp_path, header, unit):
+    (said,) = conflicts(loaded(tmp_path, header, f"unit: {unit}"))
+    assert "the sensitivity of a sensor" in said
+    assert f"write gain: what the column holds for one {unit}, or gain: 1" in said
+    assert not conflicts(loaded(tmp_path, header, f"unit: {unit}, gain: 0.1"))
+
+
+@pytest.mark.parametrize(("header", "unit"), [("x [mm] (8 V/mm)", "mm"), ("U/V", "V")])
+def test_what_is_no_sensitivity_or_stands_beside_the_unit_contradicts_nothing(tmp_path, header, unit):
+    assert not [one for one in conflicts(loaded(tmp_path, header, f"unit: {unit}")) if "sensitivity" in one]
+
+
+@pytest.mark.parametrize(
+    ("unit", "quantity"), [("100 mV/g", "g"), ("mV/g", "g"), ("125 mm/s/V", "mm/s"), ("16384 LSB/g", "g")]
+)
+def test_a_sensitivity_that_is_given_as_unit_is_answered_with_unit_and_gain(unit, quantity):
+    with pytest.raises(InputError, match="is the sensitivity of a sensor") as caught:
+        parse_unit(unit)
+    remedy = caught.value.problems[0].remedy
+    assert remedy.startswith(f"write unit: {quantity}, and gain: what the column holds for one {quantity}")
+    assert parse_unit(quantity)
