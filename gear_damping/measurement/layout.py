@@ -19,7 +19,7 @@ from gear_damping.measurement.rig import (
 )
 from gear_damping.schema.mappings import Declared, Item, Listed, Path, Word, key
 from gear_damping.schema.values import Flag, Number, OneOf, Text, refuse
-from gear_damping.units import parse_unit, to_si
+from gear_damping.units import parse_unit, spoken, to_si
 
 SYSTEMS = ("gear_pair", "oscillator")
 COUNTS = ("1", "count", "counts")  # what the column of an encoder may be said to be in
@@ -197,7 +197,8 @@ class Window(Declared):
         rule, remedy = super().not_a_mapping(place, value)
         if isinstance(value, list) and len(value) == 2 and all(isinstance(one, int | float | str) for one in value):
             first, last = value
-            remedy = f"write window: {{from: {first}, to: {last}, unit: s}}, or slice: [a, b] with the numbers of rows"
+            unit = "" if all(isinstance(one, str) and spoken(one) for one in value) else ", unit: s"
+            remedy = f"write window: {{from: {first}, to: {last}{unit}}}, or slice: [a, b] with the numbers of rows"
         return rule, remedy
 
     @model_validator(mode="after")

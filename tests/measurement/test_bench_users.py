@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 from gear_damping.errors import InputError
+from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.load import load_measurement
 from gear_damping.units import parse_unit
 
@@ -65,3 +67,33 @@ def test_a_sensitivity_that_is_given_as_unit_is_answered_with_unit_and_gain(unit
     remedy = caught.value.problems[0].remedy
     assert remedy.startswith(f"write unit: {quantity}, and gain: what the column holds for one {quantity}")
     assert parse_unit(quantity)
+
+
+@pytest.mark.parametrize(
+    ("asked", "held"), [("runs(1).te", "runs[0].te"), ("runs(2).te", "runs[1].te"), ("data(:,2)", "data[1]")]
+)
+def test_places_of_matlab_are_answered_with_those_that_count_from_nought(tmp_path, asked, held):
+    """The nearest name of runs(1).te is runs.te[1], another record."""
+    runs = np.zeros(2, dtype=[("te", "O")])
+    runs[:] = [(MOTION,), (2 * MOTION,)]
+    savemat(tmp_path / "a.mat", {"runs": runs, "data": np.stack([SECONDS, MOTION], 1)})
+    table = read_table(tmp_path / "a.mat")
+    with pytest.raises(InputError) as caught:
+        table.index(asked, "column")
+    assert caught.value.problems[0].remedy == f"write {held}: here it counts from 0"
+    factor = 2 if held == "runs[1].te" else 1
+    np.testing.assert_array_equal(table.values(table.index(held, "column")), factor * MOTION)
+
+
+def test_a_column_in_other_capitals_is_offered(tmp_path):
+    with pytest.raises(InputError, match="did you mean 'x_mm'"):
+        loaded(tmp_path, "x_mm", "unit: mm, gain: 1", "      acceleration: {column: X_MM, unit: mm/s^2}\n")
+
+
+@pytest.mark.parametrize("window", [["0.1 s", "0.5 s"], ["100 ms", "500 ms"], [0.1, 0.5], ["0.1", "0.5"]])
+def test_the_remedy_for_a_window_that_is_a_list_is_one(tmp_path, window):
+    """Two times that have units of their own need no unit beside them, which is refused there."""
+    with pytest.raises(InputError) as caught:
+        loaded(tmp_path, "x", "unit: mm", f"    window: {window}\n")
+    remedy = caught.value.problems[0].remedy.removeprefix("write ").partition(", or")[0]
+    assert len(loaded(tmp_path, "x", "unit: mm", f"    {remedy}\n").time) == 200

@@ -26,6 +26,7 @@ _UNIT_BEHIND = re.compile(r"\s*([(\[](?![\d, ]*[)\]])[^()\[\]]*[)\]](\s*run\s*#?
 _OF_ARRAY = re.compile(r"^(.+)\[(\d+)\]\.(\w+)$")  # `runs[0].t`, the member of a structure in an array of them
 _SMALL = 5e5  # bytes, below which a size in whole MB is said as none
 _INDEXED = re.compile(r"^(.*)\[[\d, ]+\]$")
+_OF_MATLAB = re.compile(r"\((?::,\s*)?([1-9]\d*)\)")  # `runs(2).te`, `data(:,2)`, which count from 1
 
 
 class Table(ABC):
@@ -92,7 +93,7 @@ class Table(ABC):
                 return column
             rule, remedy = f"{self.path.name} has {len(self.names)} columns", f"count from 0: {self.listing(True)}"
             raise InputError(Problem(key, rule, column, remedy, str(self.path)))
-        found = self._named(column) or self._named(_OF_ARRAY.sub(r"\1.\3[\2]", column.strip().strip("/")))
+        found = self._named(column) or self._of_array(column)
         if not found and column.strip().isdecimal() and not any(self.names):
             return self.index(int(column), key)
         if len(found) == 1:
@@ -127,6 +128,10 @@ class Table(ABC):
                 return found
         return [index for index in range(len(self.names)) if column.strip() in self.also(index)]
 
+    def _of_array(self, column: str) -> list[int]:
+        """The member of a structure in an array of them, `runs[0].t`, which is `runs.t[0]`."""
+        return self._named(_OF_ARRAY.sub(r"\1.\3[\2]", column.strip().strip("/")))
+
     def _absent(self, column: str, key: str) -> Problem:
         named = [name for name in self.names if name]
         if not named:
@@ -138,7 +143,11 @@ class Table(ABC):
             choice = [name for name in named if name.startswith(f"{base}[")]
             rule = f"'{base}' is {_shape(shapes[base])}, and one column of it is needed"
             return Problem(key, rule, column, f"write one of {choice[0]} to {choice[-1]}", str(self.path))
-        begun = next((name for name in named if name.startswith(column.strip())), None)
+        counted = _OF_MATLAB.sub(lambda one: f"[{int(one[1]) - 1}]", column.strip())
+        if counted != column.strip() and len(self._of_array(counted)) == 1:
+            return Problem(key, "no such column", column, f"write {counted}: here it counts from 0", str(self.path))
+        sought = column.strip().casefold()
+        begun = next((name for name in named if name.casefold().startswith(sought)), None)
         meant = f"did you mean '{begun}'" if begun else nearest(column, named).rstrip("?")
         remedy = meant + f"? {self.path.name} holds {self.listing()}"
         if not remedy.startswith("did you mean"):
