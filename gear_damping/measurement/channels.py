@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar
 from pydantic import model_validator
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement import other_words as words
 from gear_damping.measurement.angular_error import is_angle, is_angular_acceleration
 from gear_damping.measurement.quantities import PERIODS, Column, Corner, Cutoff, Gain, Measured, Rate, Share
 from gear_damping.measurement.record import Quantity
@@ -29,7 +30,7 @@ class Stamps(Declared):
 class Timed(Declared):
     """Time stamps or a rate."""
 
-    meant: ClassVar[Mapping[str, str]] = PERIODS
+    meant: ClassVar[Mapping[str, str]] = Frozen({**PERIODS, **words.RATES})
     time: Stamps = key("Time stamps. Small jitter is put on a grid; uneven stamps are kept.", "time base")
     sampling_rate: Annotated[Quantity, Rate()] = key("Constant rate, instead of `time`.", "time base")
 
@@ -55,7 +56,7 @@ _SCALES = {
 class AnyChannel(Timed):
     """What every channel takes: its column, its unit, its own time base, its sign and its scale."""
 
-    meant: ClassVar[Mapping[str, str]] = Frozen({**PERIODS, **_SCALES})
+    meant: ClassVar[Mapping[str, str]] = Frozen({**PERIODS, **_SCALES, **words.OF_A_CHANNEL})
     si: ClassVar[str | None] = None  # the unit that values are converted to; None: the rig's own
     derivative: ClassVar[int | None] = None  # of an oscillator's displacement; None for an input
     is_input: ClassVar[bool] = False

@@ -171,19 +171,21 @@ def _system(content: object, problems: Problems, source: str, own: tuple[str, ..
     if not isinstance(content, dict):
         rule = f"must be a mapping with keys among {', '.join(allowed)}"
         problems.append(Problem("the file", rule, content, "write `key: value` lines", source))
-    for name in content if isinstance(content, dict) else ():
+        return None
+    if "system" not in content:
+        problem = Problem("system", "is missing", None, names(layout.AnyFile)["system"].json_schema_extra["missing"])
+    else:
+        try:
+            return OneOf((*layout.SYSTEMS, *own)).read(content["system"], "system")
+        except InputError as error:
+            (problem,) = error.problems
+    meant = layout.AnyFile.meant
+    for name in content:  # of a system that is known they are told where it is read
         if name not in allowed:
-            problems.append(Problem(str(name), "unknown key", None, nearest(str(name), allowed), source))
-    if not isinstance(content, dict) or "system" not in content:
-        remedy = names(layout.AnyFile)["system"].json_schema_extra["missing"]
-        problems.append(Problem("system", "is missing", None, remedy, source))
-        return None
-    try:
-        return OneOf((*layout.SYSTEMS, *own)).read(content["system"], "system")
-    except InputError as error:
-        (problem,) = error.problems
-        problems.append(Problem("system", problem.rule, problem.value, problem.remedy, source))
-        return None
+            remedy = meant.get(name) or nearest(str(name), allowed)
+            problems.append(Problem(str(name), "unknown key", None, remedy, source))
+    problems.append(Problem("system", problem.rule, problem.value, problem.remedy, source))
+    return None
 
 
 def _parameters(file: layout.AnyFile) -> tuple[dict[str, Quantity], dict[str, Quantity]]:

@@ -1,13 +1,15 @@
 """The layout of measurement.yaml: encoders, channels, records and the file itself, for each system."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from types import MappingProxyType as Frozen
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from pydantic import model_validator
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement import channels as c
+from gear_damping.measurement import other_words as words
 from gear_damping.measurement.quantities import PERIODS, Column, FileName, Instant, Measured, Rate, Rows
 from gear_damping.measurement.record import ROLES, Quantity
 from gear_damping.measurement.rig import (
@@ -128,6 +130,8 @@ class GearChannels(c.Timed):
     meant: ClassVar[Mapping[str, str]] = Frozen(
         {
             **PERIODS,
+            **words.RATES,
+            **words.OF_GEAR_CHANNELS,
             "gear_angle": "write encoders: {gear: {column: ..., counts_per_revolution: 360}} beside channels (deg)",
             "tacho": "it is a key of encoders, which stands beside channels: write it there",
             "encoder": "write encoders beside channels, with pinion and gear below it",
@@ -160,6 +164,7 @@ class OscillatorChannels(c.Timed):
     meant: ClassVar[Mapping[str, str]] = Frozen(
         {
             **PERIODS,
+            **words.RATES,
             **dict.fromkeys(("angle", "position"), _ANSWERS),
             **dict.fromkeys(("torque", "voltage", "current"), _DRIVES),
             **dict.fromkeys(("base_velocity", "base_displacement", "base_speed", "base_position"), _BASE),
@@ -222,12 +227,24 @@ class Window(Declared):
         return first, last
 
 
+@dataclass(frozen=True)
+class Role(OneOf):
+    """What a record is for."""
+
+    def read(self, value: Any, name: str) -> str:
+        """The word; others than these are answered with the one that they mean."""
+        if isinstance(value, str) and value.lower() in words.ROLES:
+            refuse(f"must be one of {', '.join(map(str, self.choices))}", value, f"write {words.ROLES[value.lower()]}")
+        return super().read(value, name)
+
+
 class AnyRecord(Declared):
     """What the records of every system have."""
 
     meant: ClassVar[Mapping[str, str]] = Frozen(
         {
             **PERIODS,
+            **words.OF_A_RECORD,
             "parameters": "they are those of the rig, for all records: write them beside records",
             "segments": "it cuts all records: write it beside records, at the top of the file",
         }
@@ -236,7 +253,7 @@ class AnyRecord(Declared):
     file: Annotated[str, FileName()] = key(
         "The file, relative to this YAML; `${GEAR_DAMPING_DATA}` is filled in.", "values", missing=_NO_FILE
     )
-    role: Annotated[str, OneOf(ROLES)] = key(
+    role: Annotated[str, Role(ROLES)] = key(
         "Fitted, held out, or a sound casing to compare with; where none is held out, task=explain holds out a part by "
         "itself, and so does task=identify of a gear pair.",
         "fit and score",
@@ -264,6 +281,7 @@ class GearRecord(AnyRecord):
     """A record of a gear pair."""
 
     title: ClassVar[str] = "a gear_pair"
+    meant: ClassVar[Mapping[str, str]] = Frozen({**AnyRecord.meant, **words.OF_A_GEAR_RECORD})
     channels: GearChannels = key("The measured signals, and their time base.", "values")
     encoders: Encoders = key("Encoders and tacho.", "values")
     conditions: GearConditions = key("What was constant. A channel of the same name is used before it.", "values")
@@ -296,6 +314,7 @@ class OscillatorRecord(AnyRecord):
 class AnyFile(Declared):
     """What the files of every system have."""
 
+    meant: ClassVar[Mapping[str, str]] = words.OF_A_FILE
     system: Annotated[str, OneOf(SYSTEMS)] = key(
         "What was measured.", "model", missing=f"choose one of {', '.join(SYSTEMS)}"
     )

@@ -177,6 +177,8 @@ class RawReader:
         if columns:
             return self.columns.all(*columns[0]).size
         rate = self.plan.timing.sampling_rate
+        if not self.plan.encoders and any(one.key.startswith(f"{self.plan.key}.channels") for one in self.problems):
+            raise InputError([])  # what was declared for it could not be read, which is said
         if not self.plan.encoders or rate is None:
             rule, remedy = "no column gives the number of samples", "declare a time column"
             remedy += ", or sampling_rate, at which the angles are taken" if self.plan.encoders else ""

@@ -1,11 +1,13 @@
 """What measurement.yaml says of a rig: the parameters and conditions of each system."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType as Frozen
 from typing import Annotated, Any, ClassVar
 
 from pydantic import model_validator
 
+from gear_damping.measurement import other_words as words
 from gear_damping.measurement.quantities import Measured, Ratio
 from gear_damping.measurement.record import Quantity
 from gear_damping.schema.mappings import Declared, key
@@ -64,6 +66,7 @@ class GearParameters(Declared):
 
     title: ClassVar[str] = "a gear_pair"
     refused: ClassVar[Frozen[str, tuple[str, str]]] = Frozen({"gear_ratio": ("its teeth say the ratio", _TEETH)})
+    meant: ClassVar[Mapping[str, str]] = words.OF_GEAR_PARAMETERS
     n_teeth_pinion: Annotated[Quantity, Measured("1", whole=True, within=(5, 500))] = key(
         "Teeth of the pinion.", "known"
     )
@@ -131,6 +134,7 @@ class OscillatorParameters(Declared):
 
     title: ClassVar[str] = "an oscillator"
     refused: ClassVar[Frozen[str, tuple[str, str]]] = OF_A_RIG
+    meant: ClassVar[Mapping[str, str]] = words.OF_AN_OSCILLATOR
     stiffness: Annotated[Quantity, Measured("1/s^2", "not negative", uncertain=True, excluded=FALLS_AWAY)] = key(
         "Stiffness over mass; 0 means that there is no spring.", START
     )
@@ -161,6 +165,7 @@ class GearConditions(Declared):
     """What was constant in a record of a gear pair."""
 
     title: ClassVar[str] = "a gear_pair"
+    meant: ClassVar[Mapping[str, str]] = words.OF_GEAR_CONDITIONS
     pinion_speed: Annotated[Quantity, Measured("rad/s", "any", uncertain=True)] = key(
         "Speed of the pinion. A diagnosis lets it vary by a thousandth within a record without an angle.",
         "angle of the shafts, a prior with its uncertainty; beside a measured angle no more than a check of it",

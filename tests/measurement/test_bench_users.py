@@ -97,3 +97,52 @@ def test_the_remedy_for_a_window_that_is_a_list_is_one(tmp_path, window):
         loaded(tmp_path, "x", "unit: mm", f"    window: {window}\n")
     remedy = caught.value.problems[0].remedy.removeprefix("write ").partition(", or")[0]
     assert len(loaded(tmp_path, "x", "unit: mm", f"    {remedy}\n").time) == 200
+
+
+def remedies(bench) -> list[str]:
+    with pytest.raises(InputError) as caught:
+        bench.load()
+    return [one.remedy for one in caught.value.problems]
+
+
+@pytest.mark.parametrize(
+    ("place", "word", "remedy"),
+    [
+        ("parameters", "helix_angle", "leave it out, and write module and pressure_angle of the transverse plane"),
+        ("parameters", "z1", "write n_teeth_pinion and n_teeth_gear"),
+        ("conditions", "gear_speed", "write pinion_speed: that of the gear times n_teeth_gear over n_teeth_pinion"),
+        ("conditions", "torque", "write pinion_torque, or gear_torque of the load"),
+        ("channels", "te", "write transmission_error"),
+        ("channels", "pinion_encoder", "write encoders beside channels"),
+        ("channels", "fs", "write sampling_rate"),
+        ("record", "encoding", "leave it out"),
+        ("record", "rows", "write slice"),
+        ("record", "date", "leave it out, or write it as a comment"),
+    ],
+)
+def test_words_for_a_key_are_answered_with_what_they_mean(bench, place, word, remedy):
+    """The nearest keys are pressure_angle, gear_torque, time, pinion_speed, conditions, role and name."""
+    held = {"parameters": bench.content["parameters"], "channels": bench.channels, "record": bench.record}
+    held |= {"conditions": bench.record.setdefault("conditions", {})}
+    held[place][word] = 3
+    (said,) = remedies(bench)
+    assert said.startswith(remedy)
+
+
+@pytest.mark.parametrize(("word", "role"), [("train", "fit"), ("Test", "holdout"), ("validation", "holdout")])
+def test_roles_of_machine_learning_are_answered_with_those_here(bench, word, role):
+    bench.record["role"] = word
+    assert remedies(bench) == [f"write {role}"]
+
+
+@pytest.mark.parametrize(("word", "remedy"), [("measurements", "write records"), ("name", "it is a key of records")])
+def test_an_unknown_key_of_the_file_is_told_once(bench, word, remedy):
+    bench.content[word] = "x"
+    (said,) = remedies(bench)
+    assert said.startswith(remedy)
+
+
+def test_a_channel_that_is_wrong_leaves_no_demand_for_a_time_column(bench):
+    """Followed, it is refused: a rate is given."""
+    bench.record["channels"] = {"sampling_rate": "20 kHz", "dte": {"column": "dte", "unit": "um"}}
+    assert remedies(bench) == ["write transmission_error"]
