@@ -13,6 +13,7 @@ from gear_damping.measurement.quantities import PERIODS, Column, Corner, Cutoff,
 from gear_damping.measurement.record import Quantity
 from gear_damping.schema.mappings import Declared, Path, key
 from gear_damping.schema.values import Flag, OneOf, Text, refuse
+from gear_damping.units import spoken
 
 Reasons = Frozen[str, tuple[str, str]]
 
@@ -25,6 +26,13 @@ class Stamps(Declared):
         "Column of the time stamps.", "time base", missing="name the column of the time stamps"
     )
     unit: Annotated[str, Text()] = key("Unit of the stamps; absent, that of the column's header.", "time base")
+
+    @classmethod
+    def not_a_mapping(cls, place: Path, value: object) -> tuple[str, str]:
+        """Rule and remedy where something else, a value, stands at `place`."""
+        rule, remedy = super().not_a_mapping(place, value)
+        is_column = isinstance(value, str | int) and not isinstance(value, bool)
+        return rule, f"write {place[-1]}: {{column: {value}, unit: s}}, or its unit" if is_column else remedy
 
 
 class Timed(Declared):
@@ -64,6 +72,10 @@ class AnyChannel(Timed):
     @classmethod
     def not_a_mapping(cls, place: Path, value: object) -> tuple[str, str]:
         """Rule and remedy where something else, a value, stands at `place`; several sensors are a list."""
+        if isinstance(value, str | int) and not isinstance(value, bool):
+            rule, remedy = super().not_a_mapping(place, value)[0], f"write {place[-1]}: {{column: {value}, unit: …}}"
+            constant = f"write a value that was constant under conditions, and a column as {place[-1]}: "
+            return rule, f"{constant}{{column: …, unit: …}}" if spoken(value) else remedy
         if not isinstance(value, list) or len(value) < 2 or not all(isinstance(one, dict) for one in value):
             return super().not_a_mapping(place, value)
         remedy = "keep one, without the list; declare each of the others in a measurement.yaml of its own beside the "

@@ -194,6 +194,8 @@ class Measured(Value):
             value = {"value": value, "unit": self.unit}
         if not isinstance(value, dict):
             self._refuse_without_unit(value, name)
+        if "column" in value:
+            refuse("is one value, and no column", value, self._of_a_column(name))
         problems = self._unknown(value)
         number = self._number(value, name, problems)
         unit = self._unit(value, problems)
@@ -202,6 +204,13 @@ class Measured(Value):
         if problems:
             raise InputError(problems)
         return self.made(self._checked(Quantity(number, unit, uncertainty)), more)
+
+    def _of_a_column(self, name: str) -> str:
+        """What helps where a column is named in the place of a value."""
+        return (
+            f"write the number and its unit, {self._remedy(None, None, name).removeprefix('write ')}; what a column "
+            "holds is a channel"
+        )
 
     def _refuse_without_unit(self, value: Any, name: str) -> NoReturn:
         """Say what is wrong with a value that is no mapping; of a number that no unit would help, that first."""
@@ -343,6 +352,10 @@ class Rate(Measured):
     def _usual(self, number: float) -> tuple[str, ...]:
         """A number below one is hardly a rate."""
         return super()._usual(number) if number >= 1 else ("Hz", "s from one sample to the next")
+
+    def _of_a_column(self, name: str) -> str:
+        """What helps where a column is named in the place of a rate."""
+        return f"write the number and its unit, {name}: 2 kHz; a column of stamps is time: {{column: …, unit: s}}"
 
     def says(self) -> str:
         """Both."""

@@ -146,3 +146,20 @@ def test_a_channel_that_is_wrong_leaves_no_demand_for_a_time_column(bench):
     """Followed, it is refused: a rate is given."""
     bench.record["channels"] = {"sampling_rate": "20 kHz", "dte": {"column": "dte", "unit": "um"}}
     assert remedies(bench) == ["write transmission_error"]
+
+
+def test_a_column_or_a_value_without_its_mapping_is_answered_with_one(bench):
+    bench.channels.update(time="t", transmission_error="dte", pinion_speed="1800 rpm")
+    first, second, third = remedies(bench)
+    assert first == "write time: {column: t, unit: s}, or its unit"
+    assert second == "write transmission_error: {column: dte, unit: …}"
+    assert third.startswith("write a value that was constant under conditions, and a column as pinion_speed: {column")
+
+
+def test_a_column_in_the_place_of_a_value_is_answered_with_where_it_belongs(bench):
+    del bench.channels["time"]
+    bench.channels["sampling_rate"] = {"column": "fs", "unit": "Hz"}
+    bench.record["conditions"] = {"pinion_speed": {"column": "n", "unit": "rpm"}}
+    first, second = remedies(bench)
+    assert "a column of stamps is time: {column" in first
+    assert second.endswith("what a column holds is a channel")
