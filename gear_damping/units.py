@@ -100,9 +100,23 @@ _MEANT = {
     "grad": "write 'deg', or 'gon' where 400 make a turn", "oz": "write 'ozf' for a force, or give a mass in kg",
     "oz-in": "write 'ozf*in'", "ozin": "write 'ozf*in'", "ozf-in": "write 'ozf*in'", "in-oz": "write 'ozf*in'",
     **dict.fromkeys(("in-lb", "in-lbs", "lb-in", "lbs-in", "inlb", "lbin"), "write 'lbf*in'"),
+    **dict.fromkeys(("ustrain", "microstrain", "ue", "uε", "ppm"), "write 'um/m'"), "strain": "write 'm/m'",
+    **dict.fromkeys(("-", "", "n/a", "--"), "write '1' where it has none"), "mkp": "write 'kgf*m'",
+    "kgfcm": "write 'kgf*cm'", "cps": "write 'Hz'",
+    **dict.fromkeys(('"', "″", "'", "′"), "write 'arcsec' or 'arcmin' of an angle, 'in' or 'ft' of a length"),
+    **dict.fromkeys(
+        ("r.p.m.", "r.p.m", "giri/min", "umdr/min", "umdr./min", "tours/min", "rot/min", "tr/mn"), "write 'rpm'"
+    ),
     "psi": "write 'lbf/in^2'", "d": "write 'day'", "lb": _POUND, "lbs": _POUND, "pound": _POUND, "pounds": _POUND,
 }  # fmt: skip
 
+_LEVEL_OF = re.compile(  # how a level of a signal was taken, before or behind its unit
+    r"^(?P<before>(?:rms|pk-pk|p-p|pp|pk|peak)\s)?(?P<unit>.*?)(?P<behind>[\s_\-]+(?:rms|eff|pk-pk|p-p|pp|0-p|pk|peak))?$",
+    re.I,
+)
+_WEIGHT_OF_LEVER = re.compile(
+    r"^(?:(?P<weight>lbs?f?|ozf?)[\s.*·-]*(?P<lever>in|ft)|(?P<first>in|ft)[\s.*·-]*(?P<second>lbs?f?|ozf?))$", re.I
+)
 _SPELLINGS = {"⁻¹": "^-1", "⁻²": "^-2", "µ": "u", "μ": "u", "·": "*", "²": "^2", "³": "^3", "°": "deg", "**": "^"}
 _SPELLINGS |= {"º": "deg", "㎜": "mm", "㎝": "cm", "㎳": "ms", "㎲": "us", "㎐": "Hz", "秒": "s"}
 _SPELLINGS |= {"N.m": "N*m", "N m": "N*m"}
@@ -129,6 +143,10 @@ _ALSO = {
     "Sa/s": "Hz", "kSa/s": "kHz", "samples/s": "Hz", "ks/s": "kHz",
     "samples/sec": "Hz", "sps": "Hz", "fps": "Hz", "Second": "s", "Seconds": "s",
     "percent": "%", "m/sec^2": "m/s^2", "m/sec2": "m/s^2",
+    "millis": "ms", "millisecond": "ms", "millisec": "ms", "msecs": "ms", "micros": "us", "microsecond": "us",
+    "microsec": "us", "usecs": "us", "mins": "min", "hr": "h", "hrs": "h", "ksps": "kHz", "kSPS": "kHz",
+    "MSa/s": "MHz", "Msps": "MHz", "IPS": "ips", "CPM": "1/min",
+    "cpm": "1/min", "pct": "%",
     "ms^-2": "m/s^2", "ms^-1": "m/s", "ms-2": "m/s^2", "ms-1": "m/s",  # no milliseconds: their powers are no motion
 }  # fmt: skip
 _DIGITS = r"\s*(?P<number>[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)\s*"
@@ -140,6 +158,7 @@ _SUPERSCRIPT = re.compile(r"(?<=10)⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+")  # the p
 _SCALED = re.compile(
     r"^(?P<unit>[A-Za-zµμ°][^*x×·]*?)\s*[*x×·/]\s*\d+[.,]?\d*(e[+-]?\d+|\^?[+\-−]\d+|\^\d+|[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?$"
 )
+_PER_TIME = re.compile(r"^(?P<above>[A-Za-z]+)[ .*]s(ec)?\^?-(?P<power>[12])$")  # `m s-2`, `mm.s^-1`
 # a power may stand without its sign: m/s2
 _GAP = re.compile(r"(?<=[A-Za-z\d])[ .\-](?=[A-Za-z])")  # what people write between the factors of a product
 _JOINED = re.compile(r"(?<![A-Za-z])(kg|kN|daN|N|lbf)(?=(mm|cm|m|in|ft)([\^\d/]|$))")  # or nothing
@@ -174,6 +193,7 @@ def parse_unit(text: str, key: str = "unit", source: str = "") -> Unit:
     for spelling, ours in _SPELLINGS.items():
         plain = plain.replace(spelling, ours)
     plain = _OF_GRAVITY.get(plain) or _ALSO.get(plain, plain)
+    plain = _PER_TIME.sub(r"\g<above>/s^\g<power>", plain)
     plain = plain.replace("(", "").replace(")", "") if "/" not in plain else plain
     unit = Unit(1.0, _ONE)
     for index, part in enumerate(plain.split("/")):
@@ -290,8 +310,37 @@ def _unknown(piece: str, name: str, text: str, key: str, source: str) -> Problem
     if piece.lower() in _COUNTED:
         remedy = f"write '{text.strip().replace(piece, '1')}'"
         return Problem(key, f"'{piece}' has no unit here: it is a plain number", remedy=remedy, source=source)
-    remedy = _MEANT.get(name.lower()) or _as_product(text) or _alike(name)
+    remedy = _MEANT.get(text.strip().lower()) or _of_a_level(text) or _of_a_lever(text) or _MEANT.get(name.lower())
+    remedy = remedy or _as_product(text) or _in_other_capitals(piece, name, text) or _alike(name)
     return Problem(key, f"unknown unit '{text}'", remedy=remedy, source=source)
+
+
+def _of_a_level(text: str) -> str:
+    """The remedy for a unit beside which stands how a level was taken, `mm pk-pk` or `g rms`; "" for any other."""
+    found = _LEVEL_OF.match(text.strip())
+    unit = found["unit"] if found and (found["before"] or found["behind"]) else ""
+    if not unit or not is_of_kind(unit, unit):
+        return ""
+    return f"write '{unit}' where the values are the signal itself; a level of it, as rms or peak to peak, is no signal"
+
+
+def _of_a_lever(text: str) -> str:
+    """The remedy for a weight times a lever without its sign, `lb-ft` or `ozin`; "" for any other text."""
+    found = _WEIGHT_OF_LEVER.match(text.strip())
+    if not found:
+        return ""
+    weight = "ozf" if (found["weight"] or found["second"]).lower().startswith("oz") else "lbf"
+    lever = (found["lever"] or found["first"]).lower()
+    return f"write '{weight}*{lever}'" if found["weight"] else f"write '{lever}*{weight}'"
+
+
+def _in_other_capitals(piece: str, name: str, text: str) -> str:
+    """The remedy for a factor in other capitals, `KHz` or `m/S2`; "" where it is none, or several are written so."""
+    alike = [atom for atom in _ATOMS if atom.lower() == name.lower()]
+    if len(alike) > 1:
+        return f"write {' or '.join(repr(one) for one in alike)}, whichever it is"
+    right = text.strip().replace(piece, piece.replace(name, alike[0])) if alike else ""
+    return f"did you mean '{right}'?" if right not in ("", text.strip()) and is_of_kind(right, right) else ""
 
 
 def _alike(name: str) -> str:

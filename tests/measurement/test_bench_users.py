@@ -163,3 +163,36 @@ def test_a_column_in_the_place_of_a_value_is_answered_with_where_it_belongs(benc
     first, second = remedies(bench)
     assert "a column of stamps is time: {column" in first
     assert second.endswith("what a column holds is a channel")
+
+
+@pytest.mark.parametrize(
+    ("unit", "same"),
+    [
+        ("m s-2", "m/s^2"), ("mm.s-1", "mm/s"), ("m s^-2", "m/s^2"),
+        ("IPS", "in/s"), ("CPM", "1/min"), ("millis", "ms"), ("micros", "us"), ("MSa/s", "MHz"),
+    ],
+)  # fmt: skip
+def test_units_of_instruments_are_read(unit, same):
+    assert parse_unit(unit) == parse_unit(same)
+
+
+@pytest.mark.parametrize(
+    ("unit", "right"),
+    [
+        ("KHz", "kHz"), ("Rpm", "rpm"), ("m/S2", "m/s2"), ("M/s2", "m/s2"), ("lbft", "lbf*ft"), ("ftlb", "ft*lbf"),
+        ("lb*ft", "lbf*ft"), ("kgfcm", "kgf*cm"), ("mkp", "kgf*m"), ("mm pk-pk", "mm"), ("pk-pk mm", "mm"),
+        ("g rms", "g"), ("um_pp", "um"), ("microstrain", "um/m"), ("giri/min", "rpm"),
+        ("r.p.m.", "rpm"), ("Umdr/min", "rpm"), ("-", "1"),
+    ],
+)  # fmt: skip
+def test_a_unit_in_other_words_is_offered_as_it_is_written_here(unit, right):
+    """`g rms` was answered with gram, `mkp` with mph, `m/S2` with s, and `lbft` with lbf."""
+    with pytest.raises(InputError) as caught:
+        parse_unit(unit)
+    assert f"'{right}'" in caught.value.problems[0].remedy
+    assert parse_unit(right)
+
+
+def test_of_capitals_that_say_two_units_both_are_offered():
+    with pytest.raises(InputError, match="write 'nm' or 'Nm', whichever it is"):
+        parse_unit("NM")
