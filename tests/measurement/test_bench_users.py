@@ -196,3 +196,21 @@ def test_a_unit_in_other_words_is_offered_as_it_is_written_here(unit, right):
 def test_of_capitals_that_say_two_units_both_are_offered():
     with pytest.raises(InputError, match="write 'nm' or 'Nm', whichever it is"):
         parse_unit("NM")
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "Sample Interval,1e-3,s", "Samples/s: 1000", "sps=1000", "ODR: 1000 Hz", "Messrate: 1 kHz",
+        "Fréquence d'échantillonnage: 1000 Hz", "Frecuencia de muestreo: 1000 Hz", "Frequenza di campionamento: 1 kHz",
+    ],
+)  # fmt: skip
+def test_a_rate_above_a_table_that_the_declared_one_contradicts_is_told(tmp_path, line):
+    (tmp_path / "a.csv").write_text(f"{line}\nx;y\n" + "".join(f"{x:.6f};1.5\n" for x in MOTION), encoding="utf-8")
+    assert read_table(tmp_path / "a.csv").stated_rate[1] == pytest.approx(1000)
+    (tmp_path / "m.yaml").write_text(
+        "system: oscillator\nrecords:\n  - file: a.csv\n    channels:\n      sampling_rate: 500 Hz\n"
+        "      displacement: {column: x, unit: mm}\n"
+    )
+    (found,) = [one for one in load_measurement(tmp_path / "m.yaml").records[0].findings if "1000 Hz" in one.message]
+    assert "and sampling_rate says 500 Hz" in found.message

@@ -17,7 +17,9 @@ _STEP = re.compile(
     r"(samp(le|ling)|time|horizontal|record|abtast)[ _-]?(interval\w*|period\w*|increment\w*|step\w*))" + _END, re.I,
 )  # fmt: skip
 _RATE = re.compile(
-    r"\b(samp(le|ling)[ _-]?(rate|freq(uency)?)|samples (per|a) second|abtast(rate|frequenz)|fs|"
+    r"\b(samp(le|ling)[ _-]?(rate|freq(uency)?)|samples (per|a) second|samples/s(ec)?|sps|fs|srate|odr|"
+    r"(abtast|mess|sampling)(rate|frequenz)|fr[eé]quence d.?[eé]chantillonnage|frecuencia de muestreo|"
+    r"frequenza di campionamento|"
     r"(update|output|scan|acquisition|logging|frame)[ _-]?(rate|freq(uency)?))" + _END,
     re.I,
 )
@@ -28,7 +30,9 @@ _STEP_ALONE = re.compile(
 _BARE = re.compile(r"^\s*rate(?=\W*$|\s*[(\[]|\s+in\s)", re.I)  # of the lines above a table: any rate
 _CLOCK = re.compile(r"^\s*clock\b", re.I)  # Hantek: `#CLOCK:500us`
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.I)
-_WITH_SIGNS = re.compile(r"[-+]?(\d+([.,]\d+)*[.,]?|[.,]\d+)(e[-+]?\d+)?", re.I)  # of decimals, or between thousands
+_WITH_SIGNS = re.compile(  # of decimals, or between thousands; behind a letter a comma parts cells
+    r"[-+]?(\d+([.,]\d+)*[.,]?|(?<![^\W\d])[.,]\d+)(e[-+]?\d+)?", re.I
+)
 _OF_A_NAME = re.compile(r"[^\W\d]")  # before a number that is a part of it, as in `CH1` and `Signal_0`
 _SETTING = re.compile(r"\s*[A-Za-z][\w ]*=\s*[-+.\d]")  # a cell of its own: `CH1V,t0 = -0.3,tInc = 5e-04`
 _FRAMES = ["Frame", "Sub Frame"]  # the names of the first columns in tables of Vicon
