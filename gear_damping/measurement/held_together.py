@@ -91,24 +91,29 @@ def _spectra(values: NDArray[np.float64]) -> NDArray[np.complex128]:
 
 
 def _torques(record: Record, known: Mapping[str, float]) -> Iterator[Finding]:
-    """Torques that would have changed a speed that hardly changed."""
-    needed = ("inertia_pinion", "inertia_gear", "n_teeth_pinion", "n_teeth_gear")
+    """Torques that would have changed a speed that hardly changed; where no inertia is known a note."""
     pinion, gear = (_mean(record, f"{shaft}_torque") for shaft in ("pinion", "gear"))
     speeds = _speeds(record)
-    if pinion is None or gear is None or speeds is None or not all(known.get(name) for name in needed):
+    if pinion is None or gear is None or speeds is None or not all(known.get(name) for name in GEOMETRY.values()):
         return
     ratio = known["n_teeth_pinion"] / known["n_teeth_gear"]
     left = pinion - gear * ratio
     if abs(left) <= _LOSS * max(abs(pinion), abs(gear * ratio)):
+        return
+    said = f"pinion_torque {pinion:.4g} N*m and gear_torque {gear:.4g} N*m do not balance over {1 / ratio:.4g}"
+    check = "check their signs (a load is positive on the gear), units and shafts"
+    if not all(known.get(f"inertia_{shaft}") for shaft in ("pinion", "gear")):
+        if np.ptp(speeds) <= _STEADY * abs(speeds[0]):
+            message = f"{said}, and the pinion's speed is steady: {check}, or state gear_torque: balanced"
+            yield Finding("torques_disagree", message, channel="gear_torque", severity="note")
         return
     change = left / (known["inertia_pinion"] + known["inertia_gear"] * ratio**2) * record.duration
     if np.ptp(speeds) > _STEADY * abs(change) or abs(change) < _STEADY * abs(speeds[0]):
         return
     rpm = 30 / np.pi
     message = (
-        f"pinion_torque {pinion:.4g} N*m and gear_torque {gear:.4g} N*m do not balance over {1 / ratio:.4g}: they "
-        f"would change the pinion's speed by {change * rpm:.3g} rpm, and it hardly leaves {speeds[0] * rpm:.5g} rpm; "
-        "check their signs (a load is positive on the gear), units and shafts"
+        f"{said}: they would change the pinion's speed by {change * rpm:.3g} rpm, and it hardly leaves "
+        f"{speeds[0] * rpm:.5g} rpm; {check}"
     )
     yield Finding("torques_disagree", message, channel="gear_torque")
 

@@ -214,3 +214,13 @@ def test_a_rate_above_a_table_that_the_declared_one_contradicts_is_told(tmp_path
     )
     (found,) = [one for one in load_measurement(tmp_path / "m.yaml").records[0].findings if "1000 Hz" in one.message]
     assert "and sampling_rate says 500 Hz" in found.message
+
+
+@pytest.mark.parametrize(("gear", "told"), [(60.0, True), (-107.0, True), (107.0, False), (95.0, False)])
+def test_torques_that_do_not_balance_are_told_without_inertias_too(bench, gear, told):
+    bench.content["parameters"] |= {"n_teeth_pinion": 23, "n_teeth_gear": 41}
+    for name in ("pinion_torque", "gear_torque", "pinion_angle"):
+        del bench.channels[name]
+    bench.record["conditions"] = {"pinion_speed": "300 rpm", "pinion_torque": "60 Nm", "gear_torque": f"{gear} Nm"}
+    found = [one for one in bench.load().records[0].findings if one.kind == "torques_disagree"]
+    assert [one.severity for one in found] == ["note"] * told
