@@ -127,7 +127,9 @@ def _read_override(argument: str, many: bool, before: str) -> tuple[list[Problem
     """What is wrong with one word, and the override that Hydra shall see; `before` is the word before it."""
     if "=" not in argument and not argument.startswith("~"):
         remedy = "write key=value, for example experiment=backlash"
-        if before.partition("=")[2]:  # a value with a blank, which the shell has cut in two
+        if Path(argument).is_file() and not before.startswith(f"{PATH}="):
+            remedy = f"write {PATH}={argument}"
+        elif before.partition("=")[2]:  # a value with a blank, which the shell has cut in two
             remedy += f'; where the blank before it is part of a value, quote the whole: "{before} {argument} …"'
         return [Problem(argument, "is not an override", remedy=remedy, source=SOURCE)], []
     if not {"'", '"'} & set(argument):  # what is quoted is read as it stands

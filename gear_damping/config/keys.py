@@ -69,6 +69,7 @@ SCHEMA: dict[str, Any] = {
         "plugins": Given(Names(), optional=True),
     },
 }
+OF_A_FILE = ("data", "file", "path", "record", "measurement_path", "input", "yaml")  # what people call the file to read
 ELSEWHERE = ("simulator", "family", "model", "wavelet", "plan")  # groups with a check of their own
 
 
@@ -88,6 +89,8 @@ def without_group(key: str) -> str:
 
 def _with_its_group(problem: Problem) -> Problem:
     """Of a key that is one of a group's and was given without it, the remedy names the group."""
+    if problem.key in OF_A_FILE:
+        return replace(problem, remedy="write measurement.path=FILE")
     groups = [name for name, kinds in SCHEMA.items() if isinstance(kinds, Mapping) and problem.key in kinds]
     return replace(problem, remedy=f"did you mean '{groups[0]}.{problem.key}'?") if len(groups) == 1 else problem
 

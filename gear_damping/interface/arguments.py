@@ -15,6 +15,7 @@ import torch
 from gear_damping.at_home import at_home
 from gear_damping.errors import InputError, Problem, with_article
 from gear_damping.explanation.explain import Listener
+from gear_damping.measurement.files import as_a_file
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.model import Model
 from gear_damping.schema.values import Flag, Given, Number, OneOf, Problems, Value
@@ -40,6 +41,7 @@ def refuse_other(measurement: object) -> None:
     if not isinstance(measurement, Measurement):
         shown = measurement if isinstance(measurement, str) else type(measurement).__name__
         rule, remedy = "must be a measurement", "give what gd.load('measurement.yaml') returns"
+        remedy = "; ".join(filter(None, [remedy, as_a_file(measurement)]))
         raise InputError(Problem("measurement", rule, shown, remedy))
 
 

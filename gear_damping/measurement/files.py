@@ -33,6 +33,17 @@ YAML = (".yaml", ".yml")  # ends of declarations; what ends otherwise is a file 
 UNKNOWN = "???"  # in a measurement.yaml that task=inspect began: what nobody can guess
 
 
+def as_a_file(value: object) -> str:
+    """The remedy where values in memory, a table of pandas or arrays, were given for a measurement; "" of others."""
+    if hasattr(value, "to_csv"):
+        written, name = "to_csv('run.csv')", "run.csv"
+    elif hasattr(value, "__array__") or (isinstance(value, dict | list | tuple) and value):
+        written, name = "np.savez('run.npz', t=t, x=x)", "run.npz"
+    else:
+        return ""
+    return f"write values in memory to a file, {written}, of which task=inspect measurement.path={name} writes a YAML"
+
+
 class _Loader(yaml.SafeLoader):
     """YAML 1.1 wants 1.0e-6 and takes 1e-6 for text, 010 for 8 and 1:30 for 90; people write the first, and mean 10."""
 

@@ -240,7 +240,7 @@ def _where_filled(columns: list[Column]) -> tuple[list[Column], str]:
         return columns, ""
     kept = [column.values[slice(*every)] for column in columns]
     some = [replace(one, values=values, finite=_finite(values)) for one, values in zip(columns, kept, strict=True)]
-    return some, f"every {every[2]}th row, in which slower columns have values"
+    return some, f"one row in {every[2]}, those in which slower columns have values"
 
 
 def of_columns(found: Inspection, used: Collection[Column]) -> Inspection:

@@ -18,7 +18,7 @@ from gear_damping.at_home import at_home
 from gear_damping.errors import InputError, Problem, with_article
 from gear_damping.measurement.declaration import Plan, RecordPlan, declared_plan
 from gear_damping.measurement.declared_units import UnitSystem, written
-from gear_damping.measurement.files import UNKNOWN, Files, read_yaml, unfilled
+from gear_damping.measurement.files import UNKNOWN, Files, as_a_file, read_yaml, unfilled
 from gear_damping.measurement.fitted_twice import with_what_is_fitted_twice
 from gear_damping.measurement.formats.registry import MAX_BYTES, readers
 from gear_damping.measurement.own_system import own_systems
@@ -86,7 +86,7 @@ def _filled(path: str | Path) -> object:
     if not isinstance(path, str | PathLike):
         rule = f"must be a path, and is {with_article(type(path).__name__)}"
         remedy = "give the path of a measurement.yaml, or what was read from it to identify and explain"
-        raise InputError(Problem("path", rule, remedy=remedy))
+        raise InputError(Problem("path", rule, remedy=as_a_file(path) or remedy))
     content = read_yaml(at_home(path))
     rule, remedy = f"{UNKNOWN} stands for what is not filled in yet", "write what the rig or its recorder says"
     if missing := list(unfilled(content)):

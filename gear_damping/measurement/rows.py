@@ -71,7 +71,7 @@ class Rows:
             message = f"the last {self.blank} rows hold nothing in the columns of the record, which ends before them"
             found["blank_rows"] = message
         if self.filled:
-            message = f"the record holds every {self.step}th row, in which its slower channels have values"
+            message = f"the record holds one row in {self.step}, those in which its slower channels have values"
             found["filled_rows"] = message
         if self.foreign:
             message = f"{len(self.foreign)} rows hold nothing in the columns of the record, as where signals speak by "

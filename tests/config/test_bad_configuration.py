@@ -36,6 +36,11 @@ FAULTS = {
         ["measurement.path=my", "data.csv"],
         ["data.csv: is not an override", '"measurement.path=my data.csv'],
     ),
+    "a_file_for_a_path": (
+        ["task=inspect", "conf/config.yaml"],
+        ["conf/config.yaml: is not an override", "write measurement.path=conf/config.yaml"],
+    ),
+    "data_for_a_path": (["task=inspect", "data=a.csv"], ["data: no such key", "write measurement.path=FILE"]),
     "unknown_key": (["sed=3"], ["sed: no such key", "did you mean 'seed'"]),
     "key_of_no_group": (["explain.ruled_out=[backlash]"], ["explain.ruled_out", "did you mean 'ruled_out', which"]),
     "key_of_no_group_in_a_model": (["model.checkpoint=a"], ["model.checkpoint", "did you mean 'checkpoint', which"]),

@@ -2,10 +2,13 @@
 
 import numpy as np
 import pytest
+from pandas import DataFrame
 from scipy.io import savemat
 
 from gear_damping.errors import InputError
+from gear_damping.interface.arguments import refuse_other
 from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.inspection import inspect_table
 from gear_damping.measurement.load import load_measurement
 from gear_damping.units import parse_unit
 
@@ -224,3 +227,24 @@ def test_torques_that_do_not_balance_are_told_without_inertias_too(bench, gear, 
     bench.record["conditions"] = {"pinion_speed": "300 rpm", "pinion_torque": "60 Nm", "gear_torque": f"{gear} Nm"}
     found = [one for one in bench.load().records[0].findings if one.kind == "torques_disagree"]
     assert [one.severity for one in found] == ["note"] * told
+
+
+@pytest.mark.parametrize("held", [np.stack([SECONDS, MOTION], 1), {"t": SECONDS, "x": MOTION}, [SECONDS, MOTION]])
+@pytest.mark.parametrize("reads", [load_measurement, refuse_other])
+def test_values_in_memory_are_answered_with_how_they_become_a_file(tmp_path, reads, held):
+    with pytest.raises(InputError, match=r"write values in memory to a file, np\.savez\('run\.npz'"):
+        reads(held)
+
+
+@pytest.mark.parametrize("reads", [load_measurement, refuse_other])
+def test_a_table_of_pandas_is_answered_with_how_it_becomes_a_file(reads):
+    with pytest.raises(InputError, match=r"write values in memory to a file, to_csv\('run\.csv'\)"):
+        reads(DataFrame({"t": SECONDS, "x": MOTION}))
+
+
+def test_one_row_in_two_is_said_so(tmp_path):
+    table = enumerate(zip(SECONDS, MOTION, strict=True))
+    rows = "\n".join(f"{t:.3f},{x:.6f},{x if k % 2 else ''}" for k, (t, x) in table)
+    (tmp_path / "a.csv").write_text(f"t,x,y\n{rows}\n")
+    taken = inspect_table(read_table(tmp_path / "a.csv")).taken
+    assert taken == "one row in 2, those in which slower columns have values"
