@@ -25,7 +25,7 @@ from gear_damping.measurement.resolution import rounding_of
 from gear_damping.measurement.shaft_checks import mesh_beyond_band, other_side, tooth_ratio
 from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.timebase import TimeBase
-from gear_damping.measurement.unit_conflicts import unit_conflict
+from gear_damping.measurement.unit_conflicts import other_motion, unit_conflict
 from gear_damping.measurement.vocabulary import HOLDABLE, SHAFT_SPEEDS
 from gear_damping.measurement.wraps import begins_again, run_over, unwrapped
 from gear_damping.schema.values import Problems
@@ -85,7 +85,8 @@ class Assembler:
     def _channel(self, raw: RawChannel, record: RawRecord, notes: list[str], findings: list[Finding]) -> Channel:
         plan = raw.plan
         conversion = self._conversion(plan, raw.unit, f"{plan.key}.unit")
-        findings += [found for found in (unit_conflict(raw, record, conversion), _scale_beside(raw, record)) if found]
+        said = (unit_conflict(raw, record, conversion), other_motion(raw), _scale_beside(raw, record))
+        findings += [found for found in said if found]
         limits = {
             name: quantity.value * self._conversion(plan, quantity.unit, f"{plan.key}.{name}", written(quantity)).factor
             for name, quantity in plan.limits.items()

@@ -10,12 +10,15 @@ from gear_damping.measurement.formats.header import is_among_words
 from gear_damping.measurement.named_units import gravity_at_end, unit_at_end
 from gear_damping.measurement.raw import SAME_UNIT, RawChannel, RawRecord
 from gear_damping.measurement.record import Finding
-from gear_damping.units import Unit, is_of_kind, multiple_of_a_unit, of_a_shaft, parse_unit, scaled_unit
+from gear_damping.measurement.vocabulary import OSCILLATOR_CHANNELS
+from gear_damping.units import Dimension, Unit, is_of_kind, multiple_of_a_unit, of_a_shaft, parse_unit, scaled_unit
 
 # What a sensor gives for one unit, `100 mV/g`, or how much one volt is, `125 mm/s/V`.
 _SENSITIVITY = re.compile(
     r"(?:\d[\d.,]*\s*)?(?:(?:mV|V|pC)/\(?(?P<below>[^\W\d][^()\[\]\s]*)|(?P<above>[^\W\d_][^()\[\]\s]*)/(?:mV|V)(?!\w))"
 )
+_MOTIONS = ("displacement", "velocity", "acceleration")  # each the derivative of the one before
+_LENGTH, _ANGLE, _PER_SECOND = Dimension(length=1), Dimension(angle=1), Dimension(time=-1)  # exponents of motions
 _IN_BRACKETS = re.compile(r"[(\[]([^()\[\]]*)[)\]]")
 
 
@@ -58,6 +61,18 @@ def unit_conflict(raw: RawChannel, record: RawRecord, conversion: Conversion) ->
     elif has_words:
         message += f", or write gain: 1 where '{raw.header_unit}' in the header is not its unit"
     return Finding("unit_conflict", message, channel=raw.plan.name)
+
+
+def other_motion(raw: RawChannel) -> Finding | None:
+    """A note where a velocity or an acceleration is in a unit of another derivative, as an acceleration in mm/s."""
+    order = OSCILLATOR_CHANNELS.get(raw.plan.name)
+    unit = parse_unit(raw.unit).dimension
+    is_motion = unit in [kind * _PER_SECOND**k for kind in (_LENGTH, _ANGLE) for k in range(len(_MOTIONS))]
+    if not order or not is_motion or -unit.time == order:
+        return None
+    motion = _MOTIONS[int(-unit.time)]
+    message = f"{raw.plan.name} is in {raw.unit}, a unit of a {motion}; declare it as {motion} where it is one"
+    return Finding("unit_conflict", message, channel=raw.plan.name, severity="note")
 
 
 def _sensitivity_in(name: str, said: str) -> str | None:

@@ -248,3 +248,28 @@ def test_one_row_in_two_is_said_so(tmp_path):
     (tmp_path / "a.csv").write_text(f"t,x,y\n{rows}\n")
     taken = inspect_table(read_table(tmp_path / "a.csv")).taken
     assert taken == "one row in 2, those in which slower columns have values"
+
+
+@pytest.mark.parametrize(
+    ("channel", "unit", "motion"),
+    [("velocity", "mm", "displacement"), ("acceleration", "mm/s", "velocity"), ("velocity", "g", "acceleration")],
+)
+def test_a_motion_in_a_unit_of_another_one_is_a_note(tmp_path, channel, unit, motion):
+    loaded(tmp_path, "x", "unit: mm")
+    text = (tmp_path / "m.yaml").read_text()
+    other = f"{channel}: {{column: 1, unit: {unit}}}"
+    (tmp_path / "m.yaml").write_text(text.replace("displacement: {column: 1, unit: mm}", other))
+    (found,) = load_measurement(tmp_path / "m.yaml").records[0].findings
+    assert (found.severity, found.channel) == ("note", channel)
+    assert found.message.endswith(f"a unit of a {motion}; declare it as {motion} where it is one")
+
+
+@pytest.mark.parametrize(
+    ("channel", "unit"), [("velocity", "mm/s"), ("acceleration", "g"), ("velocity", "V"), ("displacement", "mm/s")]
+)
+def test_a_motion_in_a_unit_of_its_own_or_of_a_sensor_is_none(tmp_path, channel, unit):
+    loaded(tmp_path, "x", "unit: mm")
+    text = (tmp_path / "m.yaml").read_text()
+    other = f"{channel}: {{column: 1, unit: {unit}}}"
+    (tmp_path / "m.yaml").write_text(text.replace("displacement: {column: 1, unit: mm}", other))
+    assert not load_measurement(tmp_path / "m.yaml").records[0].findings
