@@ -5,9 +5,9 @@ from pathlib import Path
 
 import torch
 
-from gear_damping.config.acting import SIMULATED, Found, idle_keys
+from gear_damping.config.acting import PLAN, SIMULATED, Found, idle_keys
 from gear_damping.config.by_task import BY_TASK
-from gear_damping.config.decided import TORQUE, UNSAID, holds_unsaid
+from gear_damping.config.decided import TORQUE, UNSAID, holds_unsaid, unseen_sensors
 from gear_damping.config.folders import unusable
 from gear_damping.config.light import wrong_measurement, wrong_name
 from gear_damping.config.overruled import OVERRULED, given_on_top
@@ -68,6 +68,13 @@ def _data_folder(whole: Whole) -> Found:
     rule = unusable(Path(whole["data_folder"]))
     if whole["task"] in SIMULATING and rule:
         yield "data_folder", rule, whole["data_folder"], "give another folder"
+
+
+def _unseen(whole: Whole) -> Found:
+    """Every effect shows in what is simulated."""
+    if whole["task"] in (*SIMULATING, PLAN):
+        for name, rule, remedy in unseen_sensors(whole.simulator.model):
+            yield f"simulator.effects.{name}", rule, None, remedy
 
 
 def _windows(whole: Whole) -> Found:
@@ -196,6 +203,7 @@ CHECKS: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("task", "measurement"), _measurement),
     (("ruled_out", "simulator"), _ruled_out),
     (("task", "data_folder"), _data_folder),
+    (("task", "simulator"), _unseen),
     (("task", "protocol", "simulator"), _windows),
     (("task", "protocol", "simulator"), _split),
     (("wavelet",), _wavelet),

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from gear_damping.config.source import Origin, spellings
 from gear_damping.physics.model import Model
+from gear_damping.physics.terms import TANGENTIAL, Sensor
 
 PRINTED = ("equivalent_mass", "inertia_pinion", "inertia_gear", "module", "pressure_angle")  # as_printed has its own
 ON_TEETH = "tooth_friction"  # the effect that takes lever arms from inertias, module and pressure angle
@@ -47,6 +48,18 @@ def decided_by_options(model: Model, group: str = "") -> dict[str, Decided]:
         printed = Decided("as_printed", rule, "leave one of them out")
         found |= dict.fromkeys(PRINTED[:1] if is_read else PRINTED, printed)
     return found
+
+
+def unseen_sensors(model: Model) -> list[tuple[str, str, str]]:
+    """Sensor effects of a model that nothing simulated shows, each with rule and remedy.
+
+    A simulation gives the response and the angles of the shafts. What acts on an accelerometer on a shaft shows in
+    measured records, which say where it sits.
+    """
+    rule = "has no effect on what a simulation gives: it acts on an accelerometer that sits on a shaft"
+    remedy = "leave it out; task=explain and task=identify take it where such an acceleration was measured"
+    effects = (one for one in model.effects if isinstance(one, Sensor) and one.channel == TANGENTIAL)
+    return [(one.name, rule, remedy) for one in effects]
 
 
 def holds_unsaid(model: Model, given: Container[str]) -> bool:

@@ -7,6 +7,7 @@ from typing import Any
 import torch
 from numpy.typing import ArrayLike
 
+from gear_damping.config.decided import unseen_sensors
 from gear_damping.errors import InputError, Problem, with_article
 from gear_damping.interface.arguments import SEED, names, numbers
 from gear_damping.interface.model import refuse_decided, refuse_unsaid
@@ -61,6 +62,7 @@ def refuse_idle(model: Model, given: Mapping[str, Any], series: Collection[str])
         InputError: with all of it.
     """
     problems = Problems(_of_another_argument(model, given))
+    problems += [Problem(name, rule, remedy=remedy) for name, rule, remedy in unseen_sensors(model)]
     with problems.collecting():
         refuse_decided(model, given, series)
     with problems.collecting():

@@ -7,7 +7,7 @@ from math import isfinite
 from numbers import Integral, Real
 from typing import Any
 
-from gear_damping.config.decided import decided_by_options
+from gear_damping.config.decided import decided_by_options, unseen_sensors
 from gear_damping.config.planned import COSTS, PLAIN, SENSOR
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.test_plan.asked import PlanCosts, PlanGoal, PlannedSensor, PlannedTests, Unknown
@@ -40,7 +40,8 @@ class Handed:
         """
         refuse_no_model(model)
         self.model, self.system = model, model.system
-        self.declared, self.problems = model.parameters(), Problems()
+        unseen = [Problem(name, rule, remedy=remedy) for name, rule, remedy in unseen_sensors(model)]
+        self.declared, self.problems = model.parameters(), Problems(unseen)
 
     def tests(self, given: object) -> PlannedTests:
         """Tests with numbers alone."""

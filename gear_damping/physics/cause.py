@@ -49,6 +49,7 @@ class Rig:
         spring: The parameter of the system that is its constant stiffness; None where it has a mesh.
         standing: Whether its shafts stand in all records.
         on_shafts: Whether a speed or an acceleration of one shaft was measured.
+        accelerometers: Shafts that carry one, across the radius.
         records: How many were fitted.
         swells: Whether a free motion of them grows again after it fell: energy comes back from where it went.
         mode: A mass on a spring with which loads and motions agree best, where nothing holds the driven one.
@@ -74,6 +75,7 @@ class Rig:
     mode: Mode | None = None
     records: int = 1
     swells: bool = False
+    accelerometers: tuple[str, ...] = ()
 
     def has(self, trait: Trait) -> bool:
         """Whether its system has a trait."""

@@ -11,7 +11,7 @@ import torch
 from gear_damping.errors import InputError, Problem
 from gear_damping.own_files import REMEDY, classes_of, load_module
 from gear_damping.physics import terms
-from gear_damping.physics.cause import Cause, Experiment, Recipe, Rig
+from gear_damping.physics.cause import SHAFTS, Cause, Experiment, Recipe, Rig
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.systems.base import System
 from gear_damping.physics.systems.known import SYSTEMS, systems_of
@@ -131,7 +131,7 @@ def some_rigs(kind: type[System]) -> tuple[Rig, ...]:
         both = {"frequencies": (3.0, 0.1), "values": _values(kind(), None), "traits": traits, "spring": kind.spring}
         return Rig(name, radian=1.0, **both), Rig(name, inputs=drive, **both)
     values = _values(kind(), torch.tensor([3e8])) | {"contact_ratio": 1.6}
-    others = {"mesh_harmonics": 4, "values": values, "traits": traits}
+    others = {"mesh_harmonics": 4, "values": values, "traits": traits, "accelerometers": SHAFTS}
     return Rig(name, 20, 40, **others), Rig(name, 17, 43, inputs=("pinion_angle",), lines=(12.0,), **others)
 
 

@@ -266,11 +266,19 @@ class Recording:
     begins: Tensor | None = None
 
 
+TANGENTIAL = "tangential_acceleration"  # the channel of what acts on accelerometers that sit on a shaft
+
+
 class Sensor(Effect):
     """What stands between the motion and its record; applied to SI signals after the integration."""
 
     position: ClassVar[int] = 0  # in the chain from the motion (low) to the file (high)
     channel: ClassVar[str | None] = None  # None: the response; else the channel it acts on
+
+    @property
+    def acts_on(self) -> str | None:
+        """The channel it acts on; None for the response."""
+        return self.channel
 
     @abstractmethod
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:

@@ -33,7 +33,7 @@ def shaft_motion(runs: Runs) -> dict[str, Tensor]:
     if its arms were the base radii.
 
     Returns:
-        `pinion_speed` and `gear_speed`; where the run has the acceleration (`simulate(..., acceleration=True)`) also
+        `pinion_speed` and `gear_speed`; where the run has the acceleration (`Solver(acceleration=True)`) also
         `pinion_acceleration` and `gear_acceleration`.
 
     Raises:

@@ -1,6 +1,6 @@
 """What a simulation gives back."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -136,20 +136,27 @@ class Runs:
 
     def measured(self, channel: str, generator: torch.Generator, skip: tuple[str, ...] = ()) -> Tensor:
         """Any channel behind the sensors that act on it, (batch, time)."""
-        return self._through(self._sensors(channel, skip), self.channel(channel), generator)
+        return self._through(self._sensors((channel,), skip), self.channel(channel), generator)
 
     def behind_sensors(
-        self, signal: Tensor, generator: torch.Generator, skip: tuple[str, ...] = (), begins: Tensor | None = None
+        self,
+        signal: Tensor,
+        generator: torch.Generator,
+        skip: tuple[str, ...] = (),
+        begins: Tensor | None = None,
+        seen: Collection[str] = (),
     ) -> Tensor:
-        """A response, whatever quantity it is, behind the sensors that act on the response, (batch, time).
+        """A response, whatever quantity it is, behind the sensors that act on it, (batch, time).
 
         Args:
             signal: The response, (batch, time).
             generator: Source of the sensors' noise.
             skip: Names of sensors to leave out.
             begins: Time in s from the start of the record to the first sample, (batch,).
+            seen: Channels whose sensors act on it; those of the response where none is named.
         """
-        return self._through(self._sensors(self.model.system.response, skip), signal, generator, begins)
+        sensors = self._sensors(seen or (self.model.system.response,), skip)
+        return self._through(sensors, signal, generator, begins)
 
     def _through(
         self, sensors: list[Sensor], signal: Tensor, generator: torch.Generator, begins: Tensor | None = None
@@ -169,10 +176,10 @@ class Runs:
             signal = sensor.measure(signal, own, about)
         return signal
 
-    def _sensors(self, channel: str, skip: tuple[str, ...]) -> list[Sensor]:
+    def _sensors(self, channels: Collection[str], skip: tuple[str, ...]) -> list[Sensor]:
         sensors = [e for e in self.model.effects if isinstance(e, Sensor) and e.name not in skip]
         response = self.model.system.response
-        return sorted((s for s in sensors if (s.channel or response) == channel), key=lambda s: s.position)
+        return sorted((s for s in sensors if (s.acts_on or response) in channels), key=lambda s: s.position)
 
     def keep(self, mask: Tensor) -> "Runs":
         """The runs where `mask` (batch,) is true, or those whose numbers it holds."""

@@ -142,6 +142,17 @@ def test_shaft_angle_error_is_in_the_channel_of_the_angle():
     np.testing.assert_allclose(found - angle.numpy(), 0.01 * np.cos(angle.numpy() + 0.2), atol=1e-13)
 
 
+@pytest.mark.parametrize("shaft", ["pinion", "gear"])
+def test_an_accelerometer_feels_gravity_once_a_turn_of_its_shaft(shaft):
+    sensor = EFFECTS["accelerometer_gravity"](shaft=shaft)
+    assert sensor.acts_on == f"{shaft}_acceleration"
+    still = torch.zeros(BATCH, COUNT, dtype=torch.float64)
+    found = measured("accelerometer_gravity", still, {"shaft": shaft}, phase=0.4)
+    angle = 2 * math.pi * 7.3 * TIME.numpy() + 0.2
+    turned = {"pinion": angle, "gear": angle / 2 + 0.1}[shaft]
+    np.testing.assert_allclose(found[0], 9.80665 * np.cos(turned + 0.4), atol=1e-12)
+
+
 def test_the_chain_runs_from_the_motion_to_the_file():
     order = [
         "encoder_error",

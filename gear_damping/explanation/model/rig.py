@@ -12,7 +12,7 @@ from gear_damping.explanation.model.driven_mode import driven_mode
 from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.identification.oscillator.linear_model import moves_one_way
 from gear_damping.identification.output_error.records import FitRecord
-from gear_damping.physics.cause import Rig
+from gear_damping.physics.cause import SHAFTS, Rig
 from gear_damping.physics.systems.traits import Trait
 
 Residuals = Sequence[tuple[FitRecord, Tensor]]
@@ -66,6 +66,8 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
     teeth = {"n_teeth_pinion": pinion, "n_teeth_gear": gear, "indexed": evidence.has_index}
     teeth["standing"] = all_stand(evidence.fit)
     teeth["on_shafts"] = evidence.has_rates
+    seen = {channel.shaft for record in evidence.fit for channel in record.channels if channel.is_tangential}
+    teeth["accelerometers"] = tuple(shaft for shaft in SHAFTS if shaft in seen)
     return Rig(mesh_harmonics=harmonics, lines=lines, **teeth, **common)
 
 

@@ -42,8 +42,11 @@ def recorded(runs: Runs, channel: Observed, first: bool, begins: Tensor | None =
         begins: Time in s from the start of the record to the first sample, (batch,).
     """
     signal = motion(runs, channel)
-    if first:
-        signal = runs.behind_sensors(signal, torch.Generator().manual_seed(0), (SENSOR_NOISE,), begins)
+    seen = [runs.model.system.response] if first else []
+    if channel.is_tangential:
+        seen.append(f"{channel.shaft}_acceleration")
+    if seen:
+        signal = runs.behind_sensors(signal, torch.Generator().manual_seed(0), (SENSOR_NOISE,), begins, seen)
     for one in channel.filters:
         response = butterworth_response(one.order, one.high)
         signal = filtered(signal, runs.sampling_rate, lambda f, r=response, c=one.corner: r(f / c))

@@ -142,6 +142,11 @@ class Observed:
     drifts: bool = False
 
     @property
+    def is_tangential(self) -> bool:
+        """Whether it is the acceleration across the radius of a shaft."""
+        return self.derivatives == 2 and self.shaft is not None
+
+    @property
     def derivatives(self) -> int:
         """How many times the motion is differentiated."""
         return {"displacement": 0, "transmission_error": 0, "acceleration": 2}.get(self.name, 1)

@@ -67,6 +67,7 @@ CASES: dict[str, Case] = {
     "shaft_angle_error": Case(
         note="The simulation is driven by the recorded angle: the difference is what a false angle alone leaves."
     ),
+    "accelerometer_gravity": Case(note="Of an accelerometer on the base circle of the pinion."),
     "mesh_stiffness_shape": Case({"in_phase": (0.02, -0.01), "quadrature": (0.01, 0.0)}),
     "offset_force": Case({"force": 100.0}),
     "dead_zone": Case(

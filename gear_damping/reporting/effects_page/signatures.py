@@ -10,18 +10,21 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from gear_damping.physics.cause import SHAFTS
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.base import System
 from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.physics.systems.traits import Trait
-from gear_damping.physics.terms import Effect, MeshStiffness, Sensor
+from gear_damping.physics.terms import TANGENTIAL, Effect, MeshStiffness, Sensor
 from gear_damping.reporting.effects_page import cases
 from gear_damping.reporting.effects_page.cases import Case, Values
 from gear_damping.signals.spectra import amplitude_spectrum
 from gear_damping.simulation.driven import Driven
+from gear_damping.simulation.observed import motion_of_shaft
 from gear_damping.simulation.runs import Runs
 from gear_damping.simulation.simulate import simulate
+from gear_damping.simulation.solver_settings import Solver
 
 Array = NDArray[np.float64]
 Kinds = Mapping[str, type[Effect]]
@@ -83,24 +86,35 @@ def _of_a_gear_pair(kind: type[Effect], known: Kinds, case: Case, seed: int) -> 
     samples = (cases.SETTLING + cases.TURNS) * cases.SAMPLES_PER_TURN
     shown = slice(cases.SETTLING * cases.SAMPLES_PER_TURN, None)
     names = dict(cases.NOMINAL)
-    grid = _Grid(rate, samples, seed)
+    on_shaft = issubclass(kind, Sensor) and kind.channel == TANGENTIAL
+    grid = _Grid(rate, samples, seed, on_shaft)
     true = _run(GearPair(), _effects(known, _with(kind, names, case)), given, grid)
     plain = _effects(known, _without(kind, names, case))
     nominal = _run(GearPair(), plain, given, grid)
-    if issubclass(kind, Sensor) and kind.channel == "pinion_angle":
+    scale, unit = MICRO, "µm"
+    if on_shaft:
+        records, scale, unit = (_across_radius(run, seed) for run in (true, nominal)), 1.0, "m/s²"
+    elif issubclass(kind, Sensor) and kind.channel == "pinion_angle":
         angle = true.measured("pinion_angle", _generator(seed))
         # The record is that of the true motion; what differs is the simulation that follows the false angle.
         misled = _run(GearPair(), plain, given, grid, {"pinion_angle": angle})
         records = (nominal.record(_generator(seed)), misled.record(_generator(seed)))
     else:
         records = (true.record(_generator(seed)), nominal.record(_generator(seed)))
-    measured, without = (MICRO * record[0, shown].numpy() for record in records)
+    measured, without = (scale * record[0, shown].numpy() for record in records)
     values, derived = nominal.values, nominal.derived
     teeth = float(values["n_teeth_pinion"][0])
     natural = float(derived["natural_frequency"][0]) / (2 * pi * turns_per_second)
     marks = (teeth, teeth / float(values["n_teeth_gear"][0]), natural)
     place = np.arange(len(measured)) / cases.SAMPLES_PER_TURN
-    return _signature(place, measured, without, "µm", cases.SAMPLES_PER_TURN, marks)
+    return _signature(place, measured, without, unit, cases.SAMPLES_PER_TURN, marks)
+
+
+def _across_radius(run: Runs, seed: int) -> Tensor:
+    """What an accelerometer records that sits on the pinion's base circle, (batch, time), m/s^2."""
+    channel = f"{SHAFTS[0]}_acceleration"
+    moves = run.derived["base_radius_pinion"].unsqueeze(1) * motion_of_shaft(run, channel)
+    return run.behind_sensors(moves, _generator(seed), seen=[channel])
 
 
 def _of_an_oscillator(kind: type[Effect], known: Kinds, case: Case, seed: int) -> Signature:
@@ -145,11 +159,12 @@ def _without(kind: type[Effect], nominal: dict[str, Values], case: Case) -> dict
 
 
 class _Grid(NamedTuple):
-    """When a run is looked at: samples per second, how many of them, and the seed of what is drawn."""
+    """When a run is looked at: samples per second, how many, the seed of what is drawn, and what of it is kept."""
 
     rate: float
     samples: int
     seed: int
+    acceleration: bool = False
 
 
 def _effects(known: Kinds, chosen: Mapping[str, Values]) -> list[Effect]:
@@ -167,7 +182,8 @@ def _run(
         start = derived["mean_load"] / derived["mean_stiffness"]
         values = values | {"initial_displacement": start}
     driven = Driven(inputs or {}, seed=grid.seed)
-    return simulate(model, values, sampling_rate=grid.rate, n_samples=grid.samples, inputs=driven)
+    kept = Solver(acceleration=grid.acceleration)
+    return simulate(model, values, sampling_rate=grid.rate, n_samples=grid.samples, inputs=driven, solver=kept)
 
 
 def _generator(seed: int) -> torch.Generator:
