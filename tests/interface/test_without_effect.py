@@ -165,3 +165,16 @@ def test_what_another_option_decides_is_not_unknown():
     tests, sensor = gd.PlannedTests(durations=(0.01,), sampling_rate=4e4), gd.PlannedSensor("response", noise=1e-7)
     said = said_of(lambda: gd.plan(pair(), tests, sensor, unknown="gear_torque"))
     assert f"- plan.unknown = 'gear_torque': {BALANCED.format('')}" in said
+
+
+def test_what_acts_on_an_accelerometer_of_a_shaft_is_refused_where_there_is_none(tmp_path, caplog):
+    rule = "accelerometer_gravity: has no effect on what a simulation gives"
+    model = gd.Model(gd.GearPair(), [*EFFECTS, gd.AccelerometerGravity(shaft="gear")])
+    assert rule in said_of(lambda: gd.simulate(model, **SAMPLED))
+    tests = gd.PlannedTests(durations=(0.02,), sampling_rate=2e4, speeds=(300.0,), torques=(100.0,))
+    assert rule in said_of(lambda: gd.plan(model, tests, [gd.PlannedSensor("response", snr_db=30)]))
+    path = tmp_path / "model.yaml"
+    path.write_text(yaml.safe_dump(model.to_config(), sort_keys=False))
+    assert gd.Model.from_config(path) == model, "a model of measured records holds it"
+    assert main(["task=simulate", "family=none", f"simulator.extended={path}", f"hydra.run.dir={tmp_path}/out"]) == 1
+    assert f"simulator.effects.{rule}" in caplog.text
