@@ -322,8 +322,8 @@ class GearAcceleration(Response):
     usual_datum: ClassVar[str] = "arbitrary"
     si: ClassVar[str | None] = "m/s^2"
     mounting: Annotated[str, OneOf(("tangential", "casing"))] = key(
-        "`tangential`: on a shaft, turning with it; `casing`: behind an unknown path (a tacho or an encoder tells the "
-        "angle).",
+        "`tangential`: on a shaft, turning with it (what it feels of its own weight is an effect, "
+        "`accelerometer_gravity`); `casing`: behind an unknown path (a tacho or an encoder tells the angle).",
         "response where tangential; findings in angle and order where on a casing", "casing",
     )  # fmt: skip
     shaft: Annotated[str, OneOf(("pinion", "gear"))] = key("The shaft it turns with.", "response")
