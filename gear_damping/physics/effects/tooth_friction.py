@@ -21,6 +21,8 @@ class ToothFriction(MeshForceFactor, Switch):
     A pair is at u mesh periods, 0 where it meets and the contact ratio where it parts (unloaded); the
     pair behind it is at u + 1. Where two pairs carry, each carries half. The sums are smooth in every
     region of the switches and continue smoothly beyond it. The coast flanks take the drive side's arms.
+    While the sense of rotation stays, a factor on the mesh force of the mesh angle alone is what another shape
+    of the mesh stiffness is, but for the damping: where that shape is fitted, friction has nothing left to take.
     """
 
     name = "tooth_friction"
