@@ -28,6 +28,7 @@ from gear_damping.units import parse_unit
 GEAR, OSCILLATOR = "gear_pair", "oscillator"
 _OF_THE_PINION = r"pinion|ritzel|_?1$|drive|(?<![a-z])in"
 _OF_THE_GEAR = r"gear|wheel|_?2$|driven|(?<![a-z])out"
+_PINION = re.compile(r"pinion|ritzel|pignon|piñ[oó]n|pinhão|pignone")  # what only a gear pair has
 # Roots of words in English, German, Spanish, Portuguese, Italian and French.
 _ANGLE, _ACCELERATION = r"angle|winkel|[aáâ]ngulo|angolo", r"acc|acel|beschl"
 # The first that fits counts; names in lower case without units and paths.
@@ -134,6 +135,8 @@ def system_of(found: Inspection) -> tuple[str, str]:
     """The system that a file may be of, and what says so."""
     for column in found.measured:
         if _by_name(column, _GEAR_NAMES) == "transmission_error":
+            return GEAR, f"the name of column '{column.reference}'"
+        if _PINION.search(_plain(column)):
             return GEAR, f"the name of column '{column.reference}'"
         if column.kind in (TURNING, COUNTER):
             return GEAR, f"column '{column.reference}' may be of a shaft that turns: {column.says}"
@@ -251,9 +254,18 @@ def _gear_channel(column: Column) -> tuple[str | None, str]:
     by_unit = _channel_of_unit(unit) if name is None else None
     if by_unit == "acceleration":
         return by_unit, f"by its unit {unit}"
-    if by_unit == "velocity" and parse_unit(unit).dimension == parse_unit("rad/s").dimension:
+    if by_unit == "force" and parse_unit(unit).dimension == parse_unit("N*m").dimension:
+        return f"{shaft}_torque", f"by its unit {unit}"
+    names_a_shaft = _PINION.search(_plain(column)) or re.search("gear|wheel", _plain(column))
+    if by_unit == "velocity" and (names_a_shaft or not is_linear_speed(f"{shaft}_speed", unit)):
         return f"{shaft}_speed", f"by its unit {unit}"
     return name, "by its name" if name else ""
+
+
+def is_linear_speed(channel: str | None, unit: str) -> bool:
+    """Whether it is the speed of a shaft that is seen at a radius, in m/s."""
+    linear = parse_unit("m/s").dimension
+    return str(channel).endswith("_speed") and unit != UNKNOWN and parse_unit(unit).dimension == linear
 
 
 def _by_name(column: Column, names: Sequence[tuple[str, str]]) -> str | None:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from gear_damping.measurement.angular_error import is_angle
 from gear_damping.measurement.column_kinds import ELSEWHERE
 from gear_damping.measurement.files import UNKNOWN
-from gear_damping.measurement.guessing import GEAR, Guess
+from gear_damping.measurement.guessing import GEAR, Guess, is_linear_speed
 from gear_damping.measurement.inspection import Inspection
 
 _PLAIN = re.compile(r"^[A-Za-z_/][\w./*^-]*$")
@@ -110,7 +110,10 @@ def _gear_channels(used: set[str | None]) -> Iterator[str]:
 def _declared(guess: Guess) -> str:
     stated = {"column": guess.column.reference, "unit": guess.unit}
     clock = {"time": {"column": guess.clock.reference, "unit": guess.clock.stamps.unit}} if guess.clock else {}
-    return _mapping(stated | ({"shaft": UNKNOWN} if _is_of_a_shaft(guess) else {}) | clock)
+    needed = {"shaft": UNKNOWN} if _is_of_a_shaft(guess) else {}
+    if is_linear_speed(guess.channel, guess.unit):
+        needed = {"radius": {"value": UNKNOWN, "unit": "mm"}}
+    return _mapping(stated | needed | clock)
 
 
 def _is_of_a_shaft(guess: Guess) -> bool:

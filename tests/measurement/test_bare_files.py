@@ -255,3 +255,14 @@ def test_ticks_that_are_not_even_are_of_an_encoder(tmp_path):
     found = inspected(tmp_path, x=np.sin(9 * T), ticks=np.round(700 * T + np.sin(3 * T)))
     assert found.time is None
     assert column(found, "ticks").kind == COUNTER
+
+
+def test_a_column_named_after_a_pinion_is_of_a_gear_pair(tmp_path):
+    path = tmp_path / "lauf.csv"
+    columns = np.column_stack([T, 40 + RNG(4).normal(size=N), 3 * np.sin(90 * T) + RNG(5).normal(size=N)])
+    np.savetxt(path, columns, delimiter=",", header="t [s],M_Ritzel [Nm],v_Ritzel [mm/s]", comments="")
+    found, system, listed = guessed(read_table(path))
+    assert system == ("gear_pair", "the name of column 'M_Ritzel [Nm]'")
+    assert [one.channel for one in listed] == ["pinion_torque", "pinion_speed"]
+    text = starting_yaml(found, system, listed)
+    assert 'radius: {value: "???", unit: mm}' in text, "a speed in mm/s is one at a radius"
