@@ -194,6 +194,14 @@ class MeshForceFactor(Effect):
     def force_factor(self, at: Kinematics, p: Values) -> Tensor:
         """The factor at this instant, 1 where the effect does nothing."""
 
+    def common_share(self, at: Kinematics, p: Values) -> tuple[Tensor, Tensor] | None:
+        """The force that speeds both shafts up together, per force between the flanks; None where there is none.
+
+        Of whole series, as sensors on a shaft see them: the relative motion feels nothing of it. (time, batch), and its
+        mean over a pitch, (batch,), which a brake that holds the speed balances.
+        """
+        return None
+
 
 class ExtraStates(Effect):
     """An effect with states of its own; combine it with the slots through which they act."""

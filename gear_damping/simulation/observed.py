@@ -7,7 +7,7 @@ from gear_damping.errors import with_article
 from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.model import Prepared
 from gear_damping.physics.systems.traits import Trait
-from gear_damping.physics.terms import Load, LoadPath
+from gear_damping.physics.terms import Load, LoadPath, MeshForceFactor
 from gear_damping.simulation.integrate import input_units
 from gear_damping.simulation.runs import ACCELERATION, Runs
 from gear_damping.simulation.series import ANGLE, ANGLE_RATE
@@ -29,8 +29,8 @@ def shaft_motion(runs: Runs) -> dict[str, Tensor]:
     about the mean speed of the shafts: the integral of a about its mean, and the share of x'.
     Errors of geometry move x, so that nothing changes here. Behind the torsion of a shaft T1 is the shaft's torque.
     Load effects (drag, drawn loads, a ripple that the gear's torque follows) enter through x'' alone, as they do where
-    that torque balances them, and a ripple that it does not follow enters through a too; sliding friction is counted as
-    if its arms were the base radii.
+    that torque balances them, and a ripple that it does not follow enters through a too; so does sliding friction off
+    the pitch point, to first order in its coefficient.
 
     Returns:
         `pinion_speed` and `gear_speed`; where the run has the acceleration (`Solver(acceleration=True)`) also
@@ -80,7 +80,7 @@ def _participation(runs: Runs) -> tuple[Tensor, Tensor]:
 def _common_acceleration(runs: Runs) -> Tensor:
     """The acceleration of both pitch circles as one body, m/s^2, (batch, time), or (batch, 1) where it is steady."""
     pinion_radius, gear_radius = (runs.derived[f"base_radius_{s}"].unsqueeze(1) for s in ("pinion", "gear"))
-    unbalanced = _unbalanced_torque(runs) / pinion_radius
+    unbalanced = _unbalanced_torque(runs) / pinion_radius + _sliding(runs)
     if runs.model.system.chosen["gear_torque_mode"] == "held":
         torques = (runs.inputs.get(f"{s}_torque", runs.values[f"{s}_torque"].unsqueeze(1)) for s in ("pinion", "gear"))
         drive, brake = torques
@@ -105,6 +105,28 @@ def _unbalanced_torque(runs: Runs) -> Tensor:
     forces = [path.transmitted_load(at, prepared.terms[path.name]) - at.drive_load for path in paths]
     forces += [load.load_force(at, prepared.terms[load.name]) for load in loads]
     return (sum(forces) * prepared.scales.force).T / _participation(runs)[0]
+
+
+def _sliding(runs: Runs) -> Tensor:
+    """The force on both pitch circles of what acts between the flanks beside the normal force, N, or one 0.
+
+    What it has on average under balanced torques the brake gives way to, since the speed stays.
+    """
+    effects = [effect for effect in runs.model.effects if isinstance(effect, MeshForceFactor)]
+    if not effects:
+        return torch.zeros((), dtype=torch.float64)
+    prepared = runs.model.prepare(runs.values)
+    at = _kinematics(runs, prepared)
+    shares = [effect.common_share(at, prepared.terms[effect.name]) for effect in effects]
+    shares = [share for share in shares if share is not None]
+    if not shares:
+        return torch.zeros((), dtype=torch.float64)
+    load = ((runs.model.system.load(at, prepared.base) + 0 * at.displacement) * prepared.scales.force).T
+    velocity = runs.states["velocity"]
+    moved = runs.states.get(ACCELERATION, torch.gradient(velocity, dim=-1)[0] * runs.sampling_rate)
+    pressed = load - runs.derived["equivalent_mass"].unsqueeze(1) * moved
+    is_balanced = runs.model.system.chosen["gear_torque_mode"] == "balanced"
+    return sum(pressed * share.T - is_balanced * load * mean.unsqueeze(1) for share, mean in shares)
 
 
 def _kinematics(runs: Runs, prepared: Prepared) -> Kinematics:

@@ -141,3 +141,48 @@ def test_an_oscillator_has_no_shafts():
     runs = simulate(model, model.values(1), sampling_rate=10, n_samples=3)
     with pytest.raises(ValueError, match="gear_pair"):
         shaft_motion(runs)
+
+
+@pytest.mark.parametrize("mode", ["balanced", "held"])
+def test_friction_of_the_teeth_pushes_one_shaft_more_than_it_holds_the_other_off_the_pitch_point(mode):
+    """Each pair's friction on its own arms, from the tangent points of the base circles: half the force a pair."""
+    friction, ratio, teeth, size = 0.02, 1.6, 20, 3e-3
+    pitch_of_base, tangent = 2 * np.pi * R1 / teeth, np.tan(np.pi / 9)
+    tip = size * (40 / 2 + 1)
+    approach = np.sqrt(tip**2 - R2**2) - R2 * tangent  # from where a pair meets to the pitch point, m
+
+    def slope(t, s):
+        force = K * (R1 * s[0] - R2 * s[2]) + C * (R1 * s[1] - R2 * s[3])
+        front = teeth * SPEED * t / (2 * np.pi) % 1
+        pairs = [(front, 0.5), (front + 1, 0.5)] if front < ratio - 1 else [(front, 1.0)]
+        twist = np.zeros(2)
+        for place, share in pairs:
+            off = place * pitch_of_base - approach
+            rubs = friction * share * force * (1 if off < 0 else -1)
+            twist += rubs * np.array([R1 * tangent + off, -(R2 * tangent - off)])
+        brake = 150.0 * R2 / R1
+        return [s[1], (150.0 - R1 * force + twist[0]) / I1, s[3], (R2 * force - brake + twist[1]) / I2]
+
+    found = solve_ivp(
+        slope, (0, TIMES[-1]), [2.5e-5 / R1, 0, 0, 0], "RK45", TIMES, rtol=1e-8, atol=1e-13, max_step=1e-6
+    )
+    slopes = np.array([slope(t, s) for t, s in zip(TIMES, found.y.T, strict=True)]).T
+    given = {"tooth_friction.friction_coefficient": friction, "fourier_mesh_stiffness.contact_ratio": ratio}
+    given |= {"gear_torque": 150.0 * R2 / R1} if mode == "held" else {}
+    runs = pair(mode, ("viscous_damping", "tooth_friction"), **given)
+    seen, plain = shaft_motion(runs), shaft_motion(pair(mode, ("viscous_damping",), **given))
+    for name, row in (("pinion_acceleration", 1), ("gear_acceleration", 3)):
+        rubbed = np.std(slopes[row] - plain[name][1].numpy())
+        assert np.std(seen[name][1].numpy() - slopes[row]) < 2e-3 * rubbed
+    if mode == "held":
+        assert np.abs(seen["gear_acceleration"][1].numpy() - slopes[3]).max() < 1e-4 * np.abs(slopes[3]).max()
+    if mode == "balanced":  # what friction takes on average the brake gives way to
+        for name, row in (("pinion_speed", 1), ("gear_speed", 3)):
+            swings, true = (
+                series - np.polyval(np.polyfit(TIMES, series, 1), TIMES)
+                for series in (seen[name][1].numpy(), found.y[row])
+            )
+            assert np.std(swings - true) < 0.03 * np.std(true)
+            assert abs(np.polyfit(TIMES, seen[name][1].numpy(), 1)[0]) < 0.2 * abs(
+                np.polyfit(TIMES, found.y[row], 1)[0]
+            )

@@ -56,6 +56,9 @@ class ToothFriction(MeshForceFactor, Switch):
             "slope": slope,
             "arm_at_pitch": torch.tan(base["pressure_angle"]),
             "beyond": beyond,
+            "zone": half / pi,  # mesh periods of double contact
+            "lead": base["contact_lead"] / (2 * pi),
+            "pitch_angles": 2 * pi / base["n_teeth_pinion"] + 2 * pi / base["n_teeth_gear"],
             **_zone("double", half - lead, half),
             **_zone("approach", half_approach - lead, half_approach),
         }
@@ -77,6 +80,29 @@ class ToothFriction(MeshForceFactor, Switch):
         sign_behind = 2 * p["beyond"] * approach - 1
         arms = (1 - double / 2) * sign * arm + double / 2 * sign_behind * (arm + p["slope"])
         return 1 - p["friction"] * torch.sign(at.pinion.speed) * arms
+
+    def common_share(self, at: Kinematics, p: Values) -> tuple[Tensor, Tensor]:
+        """Off the pitch point the friction turns one shaft more than it holds the other.
+
+        At the pitch point its arms are r_b1 tan(alpha) and r_b2 tan(alpha), and its torques balance over the teeth as
+        those of the normal force do; a length s behind it one arm is s longer and the other s shorter.
+        """
+        met = (at.mesh.angle / (2 * pi) + p["lead"]).remainder(1)
+        double, front = (met < p["zone"]).to(met), met - p["lead"] - p["pitch"]
+        away = (1 - double / 2) * front.abs() + double / 2 * (front + 1).abs()
+        size = -p["friction"] * torch.sign(at.pinion.angle[-1] - at.pinion.angle[0]) * p["pitch_angles"]
+        return size * away, size * _mean_away(p)
+
+
+def _mean_away(p: Values) -> Tensor:
+    """Mean over a pitch of how many pitches the pairs that carry are from the pitch point."""
+    first, zone = -p["lead"] - p["pitch"], p["zone"]
+
+    def up_to(place: Tensor) -> Tensor:
+        return place * place.abs() / 2
+
+    alone, behind = up_to(first + 1) - up_to(first), up_to(first + zone + 1) - up_to(first + 1)
+    return alone + (behind - up_to(first + zone) + up_to(first)) / 2
 
 
 def _approach(base: Values) -> Tensor:
