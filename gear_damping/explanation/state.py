@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 from gear_damping.explanation.evidence.excess import Excess, excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
-from gear_damping.explanation.model.candidates import Candidate
+from gear_damping.explanation.model.candidates import Candidate, going_with
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.trials.assess import Assessment
 from gear_damping.explanation.trials.bench import Bench
@@ -120,6 +120,10 @@ class State:
     def names(self) -> frozenset[str]:
         """The effects that were accepted."""
         return frozenset(cause.name for cause in self.accepted)
+
+    def going_with(self, name: str) -> frozenset[str]:
+        """A cause and the others that need it, which go where it goes."""
+        return going_with(name, self.outcome.hypothesis.effects)
 
     def is_at_bound(self, cause: Accepted) -> bool:
         """Whether a parameter of a cause has run into a bound, in its own full fit or beside the other causes."""

@@ -26,7 +26,8 @@ NOISE = torch.randn(LENGTH, dtype=torch.float64, generator=torch.Generator().man
 def model(free=1, size=0.0, cost=1.0, causes=()):
     """A model that leaves noise and a wave of so many noise levels on held-out records."""
     wave = size * torch.cos(torch.arange(LENGTH, dtype=torch.float64))
-    hypothesis = SimpleNamespace(free=[None] * free, causes=causes)
+    effects = [SimpleNamespace(name=name, requires=()) for name in causes]
+    hypothesis = SimpleNamespace(free=[None] * free, causes=causes, effects=effects)
     return SimpleNamespace(holdout=[NOISE + wave], hypothesis=hypothesis, fitted=SimpleNamespace(cost=cost))
 
 

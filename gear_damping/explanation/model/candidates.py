@@ -135,6 +135,15 @@ def first_sizes(base: Hypothesis, evidence: Evidence, effects: Sequence[Effect])
     return strengths, others
 
 
+def going_with(name: str, effects: Sequence[Effect]) -> frozenset[str]:
+    """An effect and all that need it, without which they are nothing: a force on a bearing goes with the bearing."""
+    gone, before = {name}, 0
+    while len(gone) > before:
+        before = len(gone)
+        gone |= {effect.name for effect in effects if gone & set(effect.requires)}
+    return frozenset(gone)
+
+
 def restored(hypothesis: Hypothesis, cause: str) -> Hypothesis:
     """A model from which a cause was taken, with what the cause had replaced free again."""
     replaced = hypothesis.replaced.get(cause, ())

@@ -17,6 +17,8 @@ def exchanged(state: State) -> State:
     does no worse in its place is its rival.
     """
     for place, cause in enumerate(state.accepted[:-1]):
+        if len(state.going_with(cause.name)) > 1:  # nothing else carries what needs it
+            continue
         if state.bench.budget.refuses(f"other effects in the place of {cause.name}"):
             break
         state = _exchanged_at(state, place)
@@ -48,7 +50,7 @@ def simplified(state: State) -> State:
 def _simplified_at(state: State, place: int) -> State:
     bench, cause = state.bench, state.accepted[place]
     simpler = cause.effect.cause.simpler
-    if simpler is None or simpler in state.names:
+    if simpler is None or simpler in state.names or len(state.going_with(cause.name)) > 1:
         return state
     without = bench.without(state.outcome, cause.name)
     ranked = bench.ranked(without, {simpler})
@@ -68,14 +70,20 @@ def pruned(state: State) -> State:
     for cause in state.accepted:
         if len(state.accepted) == 1:
             break
+        if cause.name not in state.names:  # gone with another
+            continue
         without = bench.without(state.outcome, cause.name, bench.spared(state.outcome))
         is_needed = bench.paired_gain(without, state.outcome)[1] >= bench.settings.accepted_t
         if is_needed and not _is_enough(without, state):
             continue
+        names = state.going_with(cause.name)
+        gone = [other for other in state.accepted if other.name in names]
+        left = [other for other in state.accepted if other.name not in names]
+        if not left:
+            continue
         bench.log(f"{cause.name} is not needed beside the others")
-        first, *others = [other for other in state.accepted if other is not cause]
-        first = replace(first, share=first.share + cause.share)
-        state = replace(state, outcome=without, accepted=(first, *others), pruned=(*state.pruned, cause))
+        first = replace(left[0], share=left[0].share + sum(other.share for other in gone))
+        state = replace(state, outcome=without, accepted=(first, *left[1:]), pruned=(*state.pruned, *gone))
     return state
 
 
@@ -96,7 +104,7 @@ def beside_the_others(state: State) -> State:
 def _beside_the_others_at(state: State, place: int) -> State:
     bench, cause = state.bench, state.accepted[place]
     rivals = [name for name in cause.confusable if name not in state.names]
-    if not rivals:
+    if not rivals or len(state.going_with(cause.name)) > 1:
         return state.with_cause(place, replace(cause, confusable=()))
     if bench.budget.refuses(f"rivals of {cause.name} beside the others"):
         return state.with_cause(place, replace(cause, confusable=tuple(rivals)))

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
+from functools import reduce
 from math import inf
 from typing import Any
 
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.evidence.noise import NoiseLevel
-from gear_damping.explanation.model.candidates import Candidate, candidates_for, restored
+from gear_damping.explanation.model.candidates import Candidate, candidates_for, going_with, restored
 from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
@@ -17,7 +18,6 @@ from gear_damping.explanation.trials.refit import Refit, chosen, compared, refit
 from gear_damping.explanation.trials.score import Score, Scoring, contains, scores
 from gear_damping.explanation.trials.told_size import is_told
 from gear_damping.identification.output_error.least_squares import Ends, Fitted, Rounds
-from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.simulation.solver_settings import Solver
@@ -347,17 +347,16 @@ def _one_a_size(fits: Sequence[Refit], best: Refit) -> list[Refit]:
 
 
 def _without(hypothesis: Hypothesis, name: str) -> Hypothesis:
-    def other(parameter: FreeParameter) -> bool:
-        return not parameter.name.startswith(name + ".")
-
+    """A model without a cause, and without what needs it."""
+    gone = going_with(name, hypothesis.effects)
     left = replace(
         hypothesis,
-        effects=tuple(effect for effect in hypothesis.effects if effect.name != name),
-        given={key: value for key, value in hypothesis.given.items() if not key.startswith(name + ".")},
-        free=tuple(parameter for parameter in hypothesis.free if other(parameter)),
-        causes=tuple(cause for cause in hypothesis.causes if cause != name),
+        effects=tuple(effect for effect in hypothesis.effects if effect.name not in gone),
+        given={key: value for key, value in hypothesis.given.items() if key.partition(".")[0] not in gone},
+        free=tuple(parameter for parameter in hypothesis.free if parameter.name.partition(".")[0] not in gone),
+        causes=tuple(cause for cause in hypothesis.causes if cause not in gone),
     )
-    return restored(left, name)
+    return reduce(restored, gone, left)
 
 
 def _taken(fit: Refit, base: float) -> float:
