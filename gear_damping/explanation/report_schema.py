@@ -97,7 +97,9 @@ class Cause(Part):
 class ExcessPercent(BeforeAfter):
     """Held-out mean squared residual beyond the noise."""
 
-    threshold: float = said("above it something is missing", "% of the channel's variance")
+    threshold: float = said(
+        "above it something is missing; 100 where held-out records tell nothing", "% of the channel's variance"
+    )
 
 
 class Misfit(BeforeAfter):

@@ -13,7 +13,7 @@ from gear_damping.explanation.answer.next_experiment import confusable_beforehan
 from gear_damping.explanation.answer.unexplained import unexplained_residual
 from gear_damping.explanation.evidence.data_faults import sentences
 from gear_damping.explanation.evidence.declared_units import rig_unit, unit_of
-from gear_damping.explanation.evidence.excess import ac_energy
+from gear_damping.explanation.evidence.excess import WHOLE, Excess, ac_energy
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.covariance import has_records, moves_without_one, wider_of_both
@@ -82,7 +82,11 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
             "before": before.misfit,
             "after": after.misfit,
             "floor": 1.0,
-            "excess_percent": {"before": before.percent, "after": after.percent, "threshold": after.threshold},
+            "excess_percent": {
+                "before": before.percent,
+                "after": after.percent,
+                "threshold": min(after.threshold, WHOLE),
+            },
             "records": {
                 name: {"before": before.per_record[name], "after": after.per_record[name]} for name in before.per_record
             },
@@ -181,10 +185,17 @@ def _steps(judged: Judged, evidence: Evidence) -> list[str]:
     left = "less than the noise" if before.percent < 0 else beyond
     return [
         f"The nominal simulation was fitted first, so that no wrong parameter passes for physics; the fit {ended}.",
-        f"On held-out records it leaves {left}; more than {before.threshold:.2g} % counts as significant.",
+        f"On held-out records it leaves {left}; {_significant(before)}.",
         *([segments] if evidence.segments else []),
         *_of_standing_shafts(evidence),
     ]
+
+
+def _significant(before: Excess) -> str:
+    """From where on it tells something; a calibration may be too uncertain for that."""
+    if before.threshold >= WHOLE:
+        return "the calibration is too uncertain for them to tell that something is missing"
+    return f"more than {before.threshold:.2g} % counts as significant"
 
 
 def _of_standing_shafts(evidence: Evidence) -> list[str]:
