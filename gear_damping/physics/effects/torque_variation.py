@@ -1,7 +1,8 @@
 """A torque that changes during a run."""
 
+from collections.abc import Mapping
 from math import pi
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import torch
 from torch import Tensor
@@ -14,6 +15,18 @@ from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Load, Switch, Values
 
 SHORTEST = 1e-9  # natural time that a ramp takes at least: a ramp that ends where it starts is a step
+MAINS = (50.0, 60.0)  # Hz, of public grids
+STRAYS = 0.5  # Hz, by which one strays before consumers are cut off
+
+
+def _as_hum(options: Mapping[str, Any], values: Mapping[str, float], base: Mapping[str, float]) -> str:
+    """What a sine at the frequency of the mains may be instead."""
+    if options["form"] != "sine":
+        return ""
+    frequency = values["sine_frequency"]
+    grid = next((f"{mains:g} Hz" for mains in MAINS if abs(frequency - mains) <= STRAYS), "")
+    said = f"`torque_variation` is a sine of {frequency:.4g} Hz: at {grid}, the frequency of the mains, a hum that the "
+    return said + "sensor picks up does the same to one channel." if grid else ""
 
 
 class TorqueVariation(Load, Switch):
@@ -66,6 +79,7 @@ class TorqueVariation(Load, Switch):
         ),
         separated_by="torque_channel",
         turns_with="clock",
+        also=_as_hum,
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
