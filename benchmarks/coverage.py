@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 import torch
+from matplotlib.figure import Figure
 from scipy.stats import binomtest
 
 import gear_damping as gd
@@ -27,9 +28,11 @@ from gear_damping.identification.seeding import seeded_generator
 from gear_damping.measurement.record import Channel, Quantity, Record
 from gear_damping.measurement.write import write_measurement
 from gear_damping.physics.damping_ratio import equivalent_damping_ratio, power_law_coefficient
+from gear_damping.reporting.figures import save
+from gear_damping.reporting.style import BLUE, INK, RED, new_figure, styled
 
 DOCS = Path(__file__).parents[1] / "docs"
-PAGE, CASES = DOCS / "coverage.md", DOCS / "coverage_cases.jsonl"
+PAGE, CASES, PICTURE = DOCS / "coverage.md", DOCS / "coverage_cases.jsonl", DOCS / "figures" / "coverage.png"
 BEGIN, END = "<!-- measured by `make coverage` -->", "<!-- end -->"
 KINDS = {
     "modulation": "the pinion's shaft modulates the stiffness by 1 %",
@@ -44,6 +47,7 @@ RATIOS = (0.1, 0.6)  # % of critical, of family bench
 PERTURBATION = 0.1  # of the start, of static deflection and reference velocity, of family bench
 MODULATION, POWER, TAKEN, SPEED_ERROR = 0.01, 1.8, 2.0, 0.005
 MESH = {"mesh_stiffness_max": "maximum", "mesh_stiffness_min": "minimum", "contact_ratio": "contact_ratio"}  # stated
+SHOWN = 5.0  # % of the truth, up and down: a few intervals are wider
 NARROWER = NormalDist().inv_cdf(0.95) / NormalDist().inv_cdf(0.975)  # a 90 % interval over a 95 % one
 Case = dict[str, Any]
 
@@ -209,6 +213,25 @@ def main() -> None:
     print(text)
     if asked.page:
         put(text, PAGE, BEGIN, END)
+        save(figure(noted()), PICTURE)
+
+
+def figure(cases: Sequence[Case]) -> Figure:
+    """Every interval after `explain` about the truth, in the order of the errors; a panel for each thing hidden."""
+    with styled():
+        shown = new_figure(3.4)
+        for axes, kind in zip(shown.subplots(1, len(KINDS), sharey=True), KINDS, strict=True):
+            own = [case["after"] for case in cases if case["kind"] == kind and case["after"]]
+            own.sort(key=lambda one: one["error_percent"])
+            for number, one in enumerate(own):
+                look = {"color": BLUE, "linewidth": 1.0} if one["holds"] else {"color": RED, "linewidth": 2.5}
+                ends = [100 * (end / one["true"] - 1) for end in one["interval90"]]
+                axes.plot([number, number], ends, **look)
+            axes.axhline(0, color=INK, linewidth=0.8)
+            held = sum(one["holds"] for one in own)
+            axes.set(title=f"{kind}: {held} of {len(own)} hold it", xlabel="test, by its error", ylim=(-SHOWN, SHOWN))
+        shown.axes[0].set_ylabel("interval about the truth / %")
+    return shown
 
 
 def noted() -> list[Case]:
