@@ -18,7 +18,11 @@ _SENSITIVITY = re.compile(
     r"(?:\d[\d.,]*\s*)?(?:(?:mV|V|pC)/\(?(?P<below>[^\W\d][^()\[\]\s]*)|(?P<above>[^\W\d_][^()\[\]\s]*)/(?:mV|V)(?!\w))"
 )
 _MOTIONS = ("displacement", "velocity", "acceleration")  # each the derivative of the one before
-_LENGTH, _ANGLE, _PER_SECOND = Dimension(length=1), Dimension(angle=1), Dimension(time=-1)  # exponents of motions
+_LENGTH, _ANGLE, _PER_SECOND = (
+    Dimension(length=1),
+    Dimension(angle=1),
+    Dimension(time=-1),
+)  # of what moves, turns, and of either by the second
 _IN_BRACKETS = re.compile(r"[(\[]([^()\[\]]*)[)\]]")
 
 

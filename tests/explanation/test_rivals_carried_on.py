@@ -45,7 +45,12 @@ def test_where_the_time_is_over_an_accepted_cause_is_no_rival_of_another():
     """A softer tooth was not told apart from the eccentricity that was named beside it."""
     refuses = SimpleNamespace(refuses=lambda what: True)
     causes = (Cause(NAMES[0], (NAMES[1], NAMES[2])), Cause(NAMES[1], ()))
-    state = SimpleNamespace(bench=SimpleNamespace(budget=refuses), accepted=causes, names={NAMES[0], NAMES[1]})
+    state = SimpleNamespace(
+        bench=SimpleNamespace(budget=refuses),
+        accepted=causes,
+        names={NAMES[0], NAMES[1]},
+        going_with=lambda name: {name},
+    )
     state.with_cause = lambda place, cause: (place, cause.confusable)
     assert revise._beside_the_others_at(state, 0) == (0, (NAMES[2],))
 

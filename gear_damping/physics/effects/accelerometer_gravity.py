@@ -10,7 +10,7 @@ from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import TANGENTIAL, Recording, Sensor, Values
 
-GRAVITY = 9.80665  # m/s^2, standard
+GRAVITY = 9.80665  # m/s^2, the standard acceleration of free fall
 MOST = 1.25  # of it: a sensor whose gain is off by a quarter shows so much
 
 
