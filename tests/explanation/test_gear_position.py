@@ -12,7 +12,7 @@ from gear_damping.measurement.load import load_measurement
 
 RECORDS = (0, 3, 4, 6)  # of the full plan: three speeds, two torques, a fourth condition held out
 CASES = [
-    ("gear_eccentricity", 1, "17/43", {}),
+    pytest.param("gear_eccentricity", 1, "17/43", {}, marks=pytest.mark.slow),
     pytest.param("gear_stiffness_modulation", 2, "25/44", {}, marks=pytest.mark.slow),
     pytest.param("tooth_crack", 3, "23/57", {"shaft": "gear"}, marks=pytest.mark.slow),
 ]

@@ -11,7 +11,7 @@ def offered(content):
     return {name for cause in content["causes"] for name in (cause["name"], *cause["confusable_with"])}
 
 
-@pytest.mark.parametrize(("seed", "snr_db"), [(2, 25.0), (5, 25.0)])
+@pytest.mark.parametrize(("seed", "snr_db"), [(2, 25.0), pytest.param(5, 25.0, marks=pytest.mark.slow)])
 def test_a_null_names_no_cause(explained, seed, snr_db):
     found = explained("null", seed, snr_db)
     assert found["causes"] == []

@@ -24,7 +24,7 @@ def identified(sensors: str, rig: str | None, folder):
     ("sensors", "rig", "channel"),
     [
         ("full", None, "transmission_error"),
-        ("mean_free", None, "transmission_error"),
+        pytest.param("mean_free", None, "transmission_error", marks=pytest.mark.slow),
         pytest.param("acceleration", "37/44", "acceleration", marks=pytest.mark.slow),
         pytest.param("gear_speed", None, "gear_speed", marks=pytest.mark.slow),
         pytest.param("pinion_speed", None, "pinion_speed", marks=pytest.mark.slow),
