@@ -108,7 +108,9 @@ def test_nothing_is_found_in_an_oscillator_that_is_linear(seed, channel):
     ("effect", "seed", "channel", "kind", "unit", "alike"),
     [
         ("cubic_stiffness", 1, "velocity", "random", "V", ()),
-        ("coulomb_friction", 2, "acceleration", "multisine", "gn", ("asymmetric_friction",)),
+        pytest.param(
+            "coulomb_friction", 2, "acceleration", "multisine", "gn", ("asymmetric_friction",), marks=pytest.mark.slow
+        ),
         ("sine_restoring", 3, "displacement", "decay", "deg", ()),
         pytest.param("sensor_delay", 4, "velocity", "random", None, (), marks=pytest.mark.slow),
         pytest.param("quadratic_stiffness", 5, "acceleration", "sweep", None, (), marks=pytest.mark.slow),

@@ -37,6 +37,7 @@ VALUES = {
     ("mesh_stiffness_min", "unit"): ["N/um"],
     ("pressure_angle", "unit"): ["rad"],
     ("stiffness", "uncertainty"): [1e-3],
+    ("channels", "time", "unit"): ["ms"],  # in minutes a mesh would turn hundreds of times from sample to sample
 }
 REFUSED = {
     ("gear_pair", "system"): "unknown key",
@@ -355,7 +356,7 @@ def test_another_value_of_a_key_changes_the_answer_or_is_refused(path, kind, par
 
 def values_of(base: dict, path: tuple[str, ...], kind: Value, part: str) -> list:
     """Other values of a key."""
-    return VALUES.get(path[-2:]) or [another(holder(base, path[1:])[path[-1]], kind, part)]
+    return VALUES.get(path[-3:]) or VALUES.get(path[-2:]) or [another(holder(base, path[1:])[path[-1]], kind, part)]
 
 
 def _is_right(outcome: bool | str, path: tuple[str, ...]) -> bool:
