@@ -74,7 +74,11 @@ def _unseen(whole: Whole) -> Found:
     """Every effect shows in what is simulated."""
     if whole["task"] in (*SIMULATING, PLAN):
         for name, rule, remedy in unseen_sensors(whole.simulator.model):
-            yield f"simulator.effects.{name}", rule, None, remedy
+            extended = whole.config.get("simulator", {}).get("extended")
+            if extended is not None:
+                yield "simulator.extended", f"holds {name}, which {rule}", extended, remedy
+            else:
+                yield f"simulator.{name}", rule, None, remedy
 
 
 def _windows(whole: Whole) -> Found:

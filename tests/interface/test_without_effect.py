@@ -177,4 +177,6 @@ def test_what_acts_on_an_accelerometer_of_a_shaft_is_refused_where_there_is_none
     path.write_text(yaml.safe_dump(model.to_config(), sort_keys=False))
     assert gd.Model.from_config(path) == model, "a model of measured records holds it"
     assert main(["task=simulate", "family=none", f"simulator.extended={path}", f"hydra.run.dir={tmp_path}/out"]) == 1
-    assert f"simulator.effects.{rule}" in caplog.text
+    assert f"holds {rule.replace(': has', ', which has')}" in caplog.text
+    assert main(["task=simulate", "++simulator.accelerometer_gravity={}", f"hydra.run.dir={tmp_path}/out"]) == 1
+    assert f"simulator.{rule}" in caplog.text
