@@ -209,11 +209,12 @@ def main() -> None:
         with CASES.open("a", encoding="utf-8") as notes:
             notes.write(json.dumps(case) + "\n")
         print(json.dumps(case), flush=True)
-    text = table(noted())
+    cases = noted()
+    text = table(cases)
     print(text)
     if asked.page:
         put(text, PAGE, BEGIN, END)
-        save(figure(noted()), PICTURE)
+        save(figure(cases), PICTURE)
 
 
 def figure(cases: Sequence[Case]) -> Figure:

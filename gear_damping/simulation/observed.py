@@ -101,7 +101,7 @@ def _unbalanced_torque(runs: Runs) -> Tensor:
         return torch.zeros((), dtype=torch.float64)
     prepared = runs.model.prepare(runs.values)
     at = _kinematics(runs, prepared)
-    at.drive_load = runs.model.system.load(at, prepared.base) + torch.zeros_like(at.displacement)
+    at.drive_load = _drive_load(runs, prepared, at)
     forces = [path.transmitted_load(at, prepared.terms[path.name]) - at.drive_load for path in paths]
     forces += [load.load_force(at, prepared.terms[load.name]) for load in loads]
     return (sum(forces) * prepared.scales.force).T / _participation(runs)[0]
@@ -121,12 +121,19 @@ def _sliding(runs: Runs) -> Tensor:
     shares = [share for share in shares if share is not None]
     if not shares:
         return torch.zeros((), dtype=torch.float64)
-    load = ((runs.model.system.load(at, prepared.base) + 0 * at.displacement) * prepared.scales.force).T
-    velocity = runs.states["velocity"]
-    moved = runs.states.get(ACCELERATION, torch.gradient(velocity, dim=-1)[0] * runs.sampling_rate)
+    load = (_drive_load(runs, prepared, at) * prepared.scales.force).T
+    if ACCELERATION in runs.states:
+        moved = runs.states[ACCELERATION]
+    else:
+        moved = torch.gradient(runs.states["velocity"], dim=-1)[0] * runs.sampling_rate
     pressed = load - runs.derived["equivalent_mass"].unsqueeze(1) * moved
     is_balanced = runs.model.system.chosen["gear_torque_mode"] == "balanced"
     return sum(pressed * share.T - is_balanced * load * mean.unsqueeze(1) for share, mean in shares)
+
+
+def _drive_load(runs: Runs, prepared: Prepared, at: Kinematics) -> Tensor:
+    """The load of the system alone at every instant, in natural units, (time, batch)."""
+    return runs.model.system.load(at, prepared.base) + torch.zeros_like(at.displacement)
 
 
 def _kinematics(runs: Runs, prepared: Prepared) -> Kinematics:
