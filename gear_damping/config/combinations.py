@@ -72,13 +72,14 @@ def _data_folder(whole: Whole) -> Found:
 
 def _unseen(whole: Whole) -> Found:
     """Every effect shows in what is simulated."""
-    if whole["task"] in (*SIMULATING, PLAN):
-        for name, rule, remedy in unseen_sensors(whole.simulator.model):
-            extended = whole.config.get("simulator", {}).get("extended")
-            if extended is not None:
-                yield "simulator.extended", f"holds {name}, which {rule}", extended, remedy
-            else:
-                yield f"simulator.{name}", rule, None, remedy
+    if whole["task"] not in (*SIMULATING, PLAN):
+        return
+    extended = whole.config.get("simulator", {}).get("extended")
+    for name, rule, remedy in unseen_sensors(whole.simulator.model):
+        if extended is not None:
+            yield "simulator.extended", f"holds {name}, which {rule}", extended, remedy
+        else:
+            yield f"simulator.{name}", rule, None, remedy
 
 
 def _windows(whole: Whole) -> Found:
