@@ -13,7 +13,7 @@ def _no_global_randomness(request):
 
     Except where a test of identification builds a network itself: its weights come from torch's own.
     """
-    torch.manual_seed(0)
+    torch.default_generator.manual_seed(0)  # torch.manual_seed keeps a stack of every call for a GPU to come
     np.random.seed(0)  # noqa: NPY002 - the very state that is guarded
     before = torch.random.get_rng_state(), np.random.get_state()[1].copy()  # noqa: NPY002
     yield

@@ -371,3 +371,34 @@ def test_what_a_column_is_is_seen_by_its_name_before_a_unit_of_several_factors(t
     lines = ["t_s;n1_rad/s;T1_N*m", *(f"{k / 1e3:.3f};{k % 7};{k % 5}" for k in range(60))]
     found = guesses(inspect_table(table_of(tmp_path, lines)), "gear_pair")
     assert [(guess.channel, guess.unit) for guess in found] == [("pinion_speed", "rad/s"), ("pinion_torque", "N*m")]
+
+
+@pytest.mark.parametrize("title", ["--- Pendolo di torsione ---", "Pendolo di torsione", "misura"])
+@pytest.mark.parametrize("names", [("Tempo", "Forzante", "Pendolo"), ("t", "F", "x", "A", "fase")])
+@pytest.mark.parametrize(("between", "sign"), [(",", "\t"), (";", "\t"), (",", ";"), ("\t", ";")])
+def test_names_may_be_parted_by_another_sign_than_the_values_below(tmp_path, title, names, between, sign):
+    table = table_of(tmp_path, [title, between.join(names), *rows(30, len(names), sign)])
+    assert table.names == names
+    assert table.notes[0] == "run.csv: 1 line(s) before the header are left out"
+
+
+def test_a_title_of_as_many_words_as_columns_names_none_by_signs_alone(tmp_path):
+    table = table_of(tmp_path, ["--- pendolo di torsione ---", *rows(30, 5)])
+    assert table.names == ("",) * 5
+
+
+@pytest.mark.parametrize("label", ["Channel name", "Name", "Signal"])
+@pytest.mark.parametrize("begun", [["Timestamp,2020-03-16 17:04:51,Timestamp,2020-03-16 17:04:51"], []])
+def test_labels_may_stand_again_before_every_channel(tmp_path, label, begun):
+    head = [*begun, f'{label},"Force",{label},"Input 1"', 'Unit,"N",Unit,"V"']
+    table = table_of(tmp_path, [*head, *(f"{k / 2000},{k % 7}.5,{k / 2000},{-k % 5}.25" for k in range(40))])
+    timed = ("Time of Force", "Time of Input 1") if begun else ("", "")
+    assert table.names == (timed[0], "Force", timed[1], "Input 1")
+    assert [table.unit(k) for k in (1, 3)] == ["N", "V"]
+    assert [table.unit(k) for k in (0, 2)] == ["s" if begun else None] * 2
+    assert len(table.values(0)) == 40
+
+
+def test_a_number_in_brackets_is_no_unit(tmp_path):
+    table = table_of(tmp_path, ["t (s);pos (5);load [12]", *rows(20)])
+    assert [table.unit(k) for k in range(3)] == ["s", None, None]

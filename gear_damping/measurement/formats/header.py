@@ -29,11 +29,14 @@ _GENERIC = re.compile(
     r"^(analog(ue)?|digital|channel|chan|ch|kanal|ai|ao|di|do|in(put)?|signal|sensor|col(umn)?)[ _.#-]*\d+$", re.I
 )
 _IN_PROSE = re.compile(r"[:,;!?]$|^[(\[]")  # of a word: no name of a column ends so, and its unit stands behind it
+_IS_NAME = re.compile(r"\w")  # signs alone are none: `---` beside the words of a title
 _COUNTED_FROM = {"0": -1, "1": 0, "2": 1}  # by the number of the second column, that of the first
 _LABELS = {  # of a row, in a cell before the columns
-    "names": re.compile(r"^(name|channel|kanal|signal)s?$", re.I),
+    "names": re.compile(r"^(name|channel( name)?|kanal|signal)s?$", re.I),
     "units": re.compile(r"^(unit|einheit)(en|s)?$", re.I),
 }
+_BEGUN = re.compile(r"^timestamps?$", re.I)  # the label of when a channel began, which is over time
+_CELL_SIGNS = (",", ";", "\t", "|")  # between names, where other signs stand between the values below
 _LOGGER = "TOA5"  # the first word in files of Campbell's loggers,
 _OF_LOGGER = 4  # ... and rows of their head: the station, names, units, what was done with the values
 _RECORDER = ("TraceName", "VUnit")  # before the names and the units in files of Yokogawa's recorders
@@ -118,7 +121,7 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
 
 def known_header(rows: Sequence[Sequence[str]], width: int) -> Header | None:
     """The header of a table whose rows say themselves what they are; None of any other."""
-    return _of_logger(rows) or _of_recorder(rows, width) or _labelled(rows, width)
+    return _of_logger(rows) or _of_recorder(rows, width) or _labelled(rows, width) or _in_pairs(rows, width)
 
 
 def _of_logger(rows: Sequence[Sequence[str]]) -> Header | None:
@@ -150,6 +153,23 @@ def _labelled(rows: Sequence[Sequence[str]], width: int) -> Header | None:
     return Header(found["names"], found.get("units", ()), end, end) if "names" in found else None
 
 
+def _in_pairs(rows: Sequence[Sequence[str]], width: int) -> Header | None:
+    """The header whose labels stand again before every channel (NI: `Channel name,Force,Channel name,Torque`)."""
+    end = next((k for k, row in enumerate(rows) if filled(row) == width and all(map(is_written, row[:width]))), 0)
+    found: dict[str, list[str]] = {}
+    is_timed = False
+    for row in rows[:end] if width > 2 and width % 2 == 0 else ():
+        labels = {cell.strip() for cell in row[:width:2]}
+        label = labels.pop() if len(labels) == 1 and filled(row) == width else ""
+        is_timed |= bool(_BEGUN.match(label))
+        found |= {what: [cell.strip() for cell in row[1:width:2]] for what, one in _LABELS.items() if one.match(label)}
+    if "names" not in found:
+        return None
+    units = found.get("units", [""] * (width // 2))
+    names = [either for name in found["names"] for either in (f"Time of {name}" if is_timed else "", name)]
+    return Header(tuple(names), tuple(cell for unit in units for cell in ("s" * is_timed, unit)), end, end - len(found))
+
+
 def _of_two_rows(upper: list[str], lower: list[str], first: int) -> Header | None:
     """The header of two rows of names, of which the lower one says the unit of time; None of any other two.
 
@@ -178,11 +198,10 @@ def _uncommented(row: Sequence[str]) -> Sequence[str]:
 def _names(row: Sequence[str], width: int) -> Sequence[str]:
     """A row of texts, without a sign of comment before them and with units in brackets beside their names.
 
-    Names with blanks between them may stand above values with other signs between them.
+    Names with blanks or another sign between them may stand above values with other signs between them.
     """
-    words = row[0].split()
-    if filled(row) == 1 < width == len(words) and not any(_IN_PROSE.search(word) for word in words):
-        return words
+    if filled(row) == 1 < width and (said := _parted_otherwise(row[0], width)):
+        return said
     if filled(row) <= width and row[0].strip() not in _COMMENTS:
         return row
     cells = [cell for cell in row if cell.strip()]
@@ -194,6 +213,17 @@ def _names(row: Sequence[str], width: int) -> Sequence[str]:
         else:
             joined.append(cell)
     return joined if len(joined) == width else row
+
+
+def _parted_otherwise(line: str, width: int) -> list[str]:
+    """The names that a line holds without the sign between the values, as many as these; [] where it holds none."""
+    for sign in _CELL_SIGNS:
+        cells = [cell.strip() for cell in line.split(sign)]
+        if len(cells) == width and all(_IS_NAME.search(cell) for cell in cells):
+            return cells
+    words = line.split()
+    is_prose = any(_IN_PROSE.search(word) or not _IS_NAME.search(word) for word in words)
+    return words if len(words) == width and not is_prose else []
 
 
 def _names_by_numbers(rows: Sequence[Sequence[str]], width: int) -> bool:
@@ -237,7 +267,7 @@ def bracket_unit(name: str) -> str | None:
     if len(units) == 1:
         return units[0]
     if found is not None:
-        return found[1].strip()
+        return None if is_number(found[1]) else found[1].strip()
     if (said := _IN.search(name)) and _is_unit(said[1]):
         return said[1]
     if compound := compound_at_end(name):

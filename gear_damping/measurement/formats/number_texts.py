@@ -55,12 +55,13 @@ def parts_thousands(cells: Sequence[str], sign: str, other_is_decimal: bool = Fa
     decimal = re.escape(_OTHER[sign])
     parted = re.compile(rf"[+-]?[1-9]\d{{0,2}}(\{sign}\d{{3}})+({decimal}\d*)?")
     small = re.compile(rf"[+-]?\d{{1,3}}({decimal}\d*)?")
+    # Most columns are plain numbers, and the first of them settles it: nothing else is looked at.
+    if not all(parted.fullmatch(cell.strip()) or is_absent(cell) for cell in cells if sign in cell):
+        return False
     held = [cell.strip() for cell in cells if not is_absent(cell)]
     with_sign = [cell for cell in held if sign in cell]
     without = [cell for cell in held if sign not in cell]
-    if not with_sign or not all(parted.fullmatch(cell) for cell in with_sign):
-        return False
-    if not all(small.fullmatch(cell) for cell in without):
+    if not with_sign or not all(small.fullmatch(cell) for cell in without):
         return False
     decided = any(_OTHER[sign] in cell or cell.count(sign) > 1 for cell in with_sign)
     return decided or (len(with_sign) >= FEWEST_PARTED and (bool(without) or other_is_decimal))
