@@ -1,6 +1,6 @@
 """Shaft angles from encoders and tachos, and the transmission error from two encoders."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,8 +21,11 @@ COUNTERS = (16, 24, 32)  # bits of the registers that run over in counter cards
 FROM_ENCODERS = "transmission_error: r_b1 theta_1 - r_b2 theta_2 from the encoders, without its mean"  # a note
 MOST_CHANGES = 4  # of a count that has two values: a shaft that stands about the edge of one goes to and fro, seldom
 SQUARE = 0.1  # of a pulse's height: from one level to the other within a sample, so that the edge is known to that
+SPREAD = 5.0  # median steps between samples of a level that its noise reaches, nearly five standard deviations
 _CURVED, _ENDS = 4, 6  # pulses that a changing speed is told by, and those at an end by which it goes on
 _STEADIEST = 6  # degrees of polynomials that are tried through the edges of square pulses
+_CUBIC, _FEWEST_PIECES, _EDGES_EACH = 3, 4, 16  # degree of splines behind them, their first pieces, edges a number
+_OFF = 3.0  # deviations by which a spline through rounded edges may be off at either side
 _WITHIN = 1.03  # samples between the earliest and the latest of edges about it: rounding moves them by one in all
 _EVEN, _WHOLE = 0.2, 0.1  # share by which steps beside a lost pulse may differ, and a step from a whole number of them
 _TURN_TOLERANCE = 0.25  # of a turn; a pulse is known to a sample
@@ -165,21 +168,56 @@ def edges_of_square_pulses(
     """(m,) the times in s of rising edges, not rounded to samples, and by how much they may be late (one deviation).
 
     Square pulses tell an edge to a sample, which fifty teeth and their harmonics make a good part of a period. Where
-    some even turning leaves no more than that rounding, the edges lie on the smoothest one that does.
+    some even turning leaves no more than that rounding, the edges lie on the smoothest one that does. Noise of the two
+    levels tells nothing of where between them an edge lies.
     """
-    edges, sample = rising_edges(signal, time, threshold), float(np.median(np.diff(time)))
-    last = rises(signal >= threshold)
-    low, high = float(signal.min()), float(signal.max())
-    margin = SQUARE * (high - low)
-    if not (np.all(signal[last] < low + margin) and np.all(signal[last + 1] > high - margin)):
-        return edges, 0.0
+    last, sample = rises(signal >= threshold), float(np.median(np.diff(time)))
+    if not _are_square(signal, last, threshold):
+        return rising_edges(signal, time, threshold), 0.0
+    edges = (time[last] + time[last + 1]) / 2  # of two noisy levels what lies between them is the noise
     count = pulse_numbers(edges)
-    for degree in range(1, min(_STEADIEST, edges.size - 3) + 1):
-        turned = np.polynomial.Polynomial.fit(edges, count, degree)  # of a shaft that speeds up evenly a parabola
-        smooth = edges + (count - turned(edges)) / turned.deriv()(edges)
-        if np.ptp(edges - smooth) <= _WITHIN * sample:
-            return smooth, sample * ((degree + 1) / edges.size / 12) ** 0.5
+    for one in _steady_turnings(edges, count):
+        smooth = edges + (count - one.turned(edges)) / one.slope(edges)
+        late = sample * (one.numbers / edges.size / 12) ** 0.5
+        if np.ptp(edges - smooth) <= _WITHIN * sample + 2 * one.off * late:
+            return smooth, late
     return edges, 0.0
+
+
+@dataclass(frozen=True)
+class _Turning:
+    """A turning through edges: pulses by the time, their slope, how many numbers it has, its deviations at an edge."""
+
+    turned: Callable
+    slope: Callable
+    numbers: int
+    off: float = 0.0
+
+
+def _steady_turnings(edges: NDArray[np.float64], count: NDArray[np.int64]) -> Iterator[_Turning]:
+    """Ever less even turnings through edges (n,): of a shaft that speeds up evenly, and of a run-up by hand."""
+    for degree in range(1, min(_STEADIEST, edges.size - 3) + 1):
+        line = np.polynomial.Polynomial.fit(edges, count, degree)
+        yield _Turning(line, line.deriv(), degree + 1)
+    from scipy.interpolate import make_lsq_spline  # here, since it takes long to import and few files need it
+
+    pieces = _FEWEST_PIECES
+    while (pieces + _CUBIC) * _EDGES_EACH <= edges.size:
+        inner = np.linspace(edges[0], edges[-1], pieces + 1)
+        knots = np.r_[[edges[0]] * _CUBIC, inner, [edges[-1]] * _CUBIC]
+        spline = make_lsq_spline(edges, count, knots, _CUBIC)
+        yield _Turning(spline, spline.derivative(), pieces + _CUBIC, _OFF)
+        pieces *= 2
+
+
+def _are_square(signal: NDArray[np.float64], last: NDArray[np.int64], threshold: float) -> bool:
+    """Whether pulses go from one level to the other within a sample, after samples `last`, but for noise of theirs."""
+    high = signal >= threshold
+    levels = [float(np.median(signal[one])) for one in (~high, high)]
+    noise = [SPREAD * float(np.median(np.abs(np.diff(signal[one])))) for one in (~high, high)]
+    margin = SQUARE * (levels[1] - levels[0])
+    before, after = signal[last] - levels[0], levels[1] - signal[last + 1]
+    return bool(np.all(before < margin + noise[0]) and np.all(after < margin + noise[1]))
 
 
 def transmission_error(

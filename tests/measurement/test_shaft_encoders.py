@@ -156,6 +156,27 @@ def test_few_edges_of_a_shaft_that_speeds_up_are_told_better_than_to_a_sample():
     assert np.std(found - rises) < 0.7 * np.std(rounded - rises)
 
 
+@pytest.mark.parametrize("noise", [0.02, 0.15])  # V, of pulses of 5 V
+def test_noise_of_square_pulses_moves_no_edge(noise):
+    time, signal, rises = tacho(lambda t: 0.3 + 342.0 * t, 48e3, 0.6, once=8)
+    signal = signal + noise * np.random.default_rng(3).standard_normal(len(signal))
+    found, late = edges_of_square_pulses(signal, time, 2.5)
+    assert 0 < late < 0.05 / 48e3
+    assert np.std(found - rises) < 0.1 * np.std(rising_edges(signal, time, 2.5) - rises)
+
+
+def test_square_pulses_of_a_run_up_by_hand_are_told_better_than_to_a_sample():
+    def swing(t):
+        wave = 1.1 * np.sin(2.9 * t) + 0.31 * np.sin(5.3 * t) + 0.11 * np.sin(11.7 * t)
+        return 0.1 + 120 * t + 45 * t**2 + wave
+
+    time, signal, rises = tacho(swing, 20e3, 4.0, once=32)
+    found, late = edges_of_square_pulses(signal, time, 2.5)
+    rounded = rising_edges(signal, time, 2.5)
+    assert late > 0
+    assert np.std(found - rises) < 0.3 * np.std(rounded - rises)
+
+
 def test_edges_that_swing_by_more_than_a_sample_stay_where_they_are():
     time, signal, _ = tacho(lambda t: 0.3 + 140 * t + 0.05 * np.sin(2 * pi * 31 * t), 50e3, 0.7)
     found, late = edges_of_square_pulses(signal, time, 2.5)
