@@ -53,6 +53,7 @@ class Rig:
         records: How many were fitted.
         swells: Whether a free motion of them grows again after it fell: energy comes back from where it went.
         mode: A mass on a spring with which loads and motions agree best, where nothing holds the driven one.
+        opposed: The same of a second mode of a residue of the other sign; its `mass_ratio` is that of the residues.
         one_way: Whether nothing brings it back and it moves in one direction in each record, so that what differs
             between directions, or yields before it slides, does not show.
     """
@@ -73,6 +74,7 @@ class Rig:
     on_shafts: bool = False
     one_way: bool = False
     mode: Mode | None = None
+    opposed: Mode | None = None
     records: int = 1
     swells: bool = False
     accelerometers: tuple[str, ...] = ()

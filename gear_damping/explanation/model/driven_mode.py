@@ -4,8 +4,8 @@ Where nothing holds the first mass, its motion has no frequency of its own besid
 load does to it says all the same where the other mass swings alone: there it holds the first one still.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
@@ -61,25 +61,79 @@ def driven_mode(records: Sequence[FitRecord], noise: float) -> Mode | None:
         records: Those without a load, or with uneven stamps, say nothing.
         noise: Standard deviation of the sensor's noise, of a record of weight 1.
     """
-    even = (record for record in records if FORCE in record.inputs and record.stamps is None)
-    lines = [one for record in even if (one := _lines(record, noise)) is not None]
-    if not lines:
-        return None
-    low, high = min(one.angular[0] for one in lines), max(one.angular[-1] for one in lines)
-    places = [(float(at), zeta) for at in np.geomspace(low, high, PLACES) for zeta in DAMPED]
-    sensor = sum(one.noise for one in lines) / sum(one.power for one in lines)
-    alone, _ = _left(lines, None)
-    if alone < ABOVE * sensor:
+    seen = _Seen.of(records, noise)
+    if seen is None:
         return None
     free, braked = (
-        min((*_left(lines, (at, zeta, brake * at)), at, zeta, brake * at) for at, zeta in places for brake in brakes)
+        min(seen.tried(_pull, at, zeta, brake * at) for at, zeta in seen.places for brake in brakes)
         for brakes in ((0.0,), BRAKED)
     )
-    takes = (1 - TAKES) * (free[0] - sensor)
-    left, ratio, angular, damping, drag = braked if braked[0] - sensor < takes else free
-    if left - sensor >= (1 - TAKES) * (alone - sensor):
-        return None
-    return Mode(angular / (2 * pi), ratio, damping, drag)
+    takes = (1 - TAKES) * (free[0] - seen.sensor)
+    return seen.mode(*(braked if braked[0] - seen.sensor < takes else free))
+
+
+def opposed_mode(records: Sequence[FitRecord], noise: float) -> Mode | None:
+    """The second mode, of a residue of the other sign, with which they agree best; arguments and None as above.
+
+    Its `mass_ratio` is that of the residues.
+    """
+    seen = _Seen.of(records, noise)
+    return None if seen is None else seen.mode(*min(seen.tried(_opposed, *place) for place in seen.places))
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """What records hold at all of their frequencies, and what one mass leaves of it.
+
+    Args:
+        lines: Of every record.
+        places: Frequencies in rad/s all along the band that the load holds, each with damping ratios.
+        sensor: Share of the sensor's noise in the power of all rates.
+        alone: Share that one mass leaves.
+    """
+
+    lines: list[_Lines]
+    places: list[tuple[float, float]]
+    sensor: float
+    alone: float
+
+    @classmethod
+    def of(cls, records: Sequence[FitRecord], noise: float) -> "_Seen | None":
+        """Of records; None where none has a load, or one mass leaves hardly more than noise."""
+        even = (record for record in records if FORCE in record.inputs and record.stamps is None)
+        lines = [one for record in even if (one := _lines(record, noise)) is not None]
+        if not lines:
+            return None
+        low, high = min(one.angular[0] for one in lines), max(one.angular[-1] for one in lines)
+        places = [(float(at), zeta) for at in np.geomspace(low, high, PLACES) for zeta in DAMPED]
+        sensor = sum(one.noise for one in lines) / sum(one.power for one in lines)
+        alone, _ = _left(lines)
+        return None if alone < ABOVE * sensor else cls(lines, places, sensor, alone)
+
+    def tried(self, beside: Callable[..., list[Array]], *place: float) -> tuple[float, ...]:
+        """Share that is left beside something at a place, its size over what its columns are of, and the place."""
+        left, sizes = _left(self.lines, lambda one: beside(one, *place))
+        of = 1.0 if beside is _pull else max(sizes[0], 1e-300)
+        return left, float(sizes[2] / of), *place
+
+    def mode(self, left: float, ratio: float, angular: float, damping: float, drag: float = 0.0) -> Mode | None:
+        """One that was tried, where it takes most of what one mass leaves."""
+        if left - self.sensor >= (1 - TAKES) * (self.alone - self.sensor):
+            return None
+        return Mode(angular / (2 * pi), ratio, damping, drag)
+
+
+def _pull(one: _Lines, natural: float, zeta: float, drag: float) -> list[Array]:
+    """What a mass on a spring pulls at the driven one, which the ground brakes by `drag` in 1/s."""
+    spring = natural**2 + 2j * zeta * natural * one.angular
+    inert = 1j * drag * one.angular - one.angular**2
+    return [one.rate * spring * inert / (one.angular**2 * (spring + inert))]
+
+
+def _opposed(one: _Lines, natural: float, zeta: float) -> list[Array]:
+    """What a mode that moves the other way takes from the rate, and from what brakes it."""
+    held = natural**2 - one.angular**2 + 2j * zeta * natural * one.angular
+    return [-1j * one.angular * one.load / held, -one.load / held]
 
 
 def _lines(record: FitRecord, noise: float) -> _Lines | None:
@@ -104,27 +158,26 @@ def _lines(record: FitRecord, noise: float) -> _Lines | None:
     return _Lines(angular[kept], weight * load[kept], weight * rate[kept], weight**2 * float(sensor[kept].sum()))
 
 
-def _left(lines: Sequence[_Lines], mode: tuple[float, float, float] | None) -> tuple[float, float]:
-    """Share of the power of all rates that is left, and the other mass over the first, beside a mode.
+def _left(
+    lines: Sequence[_Lines], beside: Callable[[_Lines], list[Array]] | None = None
+) -> tuple[float, NDArray[np.float64]]:
+    """Share of the power of all rates that is left, and the sizes of the load, of damping and of what is beside them.
 
     Args:
         lines: Of all records.
-        mode: Its frequency in rad/s, its damping ratio and what brakes it against the ground, in 1/s.
+        beside: The columns of that, none of which may be negative.
     """
-    columns, wanted = [], []
-    for one in lines:
-        own = [one.load / (1j * one.angular), -one.rate / (1j * one.angular)]
-        if mode is not None:
-            natural, zeta, drag = mode
-            spring = natural**2 + 2j * zeta * natural * one.angular
-            inert = 1j * drag * one.angular - one.angular**2
-            own.append(one.rate * spring * inert / (one.angular**2 * (spring + inert)))
-        *known, rate = (np.r_[column.real, column.imag] for column in (*own, one.rate))
-        columns.append(np.stack(known, 1))
-        wanted.append(rate)
-    matrix, target = np.concatenate(columns), np.concatenate(wanted)
-    scale = np.linalg.norm(matrix, axis=0)
-    signs = np.ones((2, len(scale)))
-    signs[1, 0] = -1.0  # the gain of a load may have either
-    sizes, norm = min((nnls(sign * matrix / scale, target) for sign in signs), key=lambda one: one[1])
-    return float(norm**2 / (target @ target)), float(sizes[-1] / scale[-1]) if mode is not None else 0.0
+    found = []
+    for sign in (1.0, -1.0):  # the gain of a load may have either
+        columns, wanted = [], []
+        for one in (replace(line, load=sign * line.load) for line in lines):
+            own = [one.load / (1j * one.angular), -one.rate / (1j * one.angular)]
+            own += beside(one) if beside is not None else []
+            *known, rate = (np.r_[column.real, column.imag] for column in (*own, one.rate))
+            columns.append(np.stack(known, 1))
+            wanted.append(rate)
+        matrix, target = np.concatenate(columns), np.concatenate(wanted)
+        scale = np.linalg.norm(matrix, axis=0)
+        sizes, norm = nnls(matrix / scale, target)
+        found.append((float(norm**2 / (target @ target)), sizes / scale))
+    return min(found, key=lambda one: one[0])

@@ -39,7 +39,8 @@ SHAPE_BAND = 1.6  # harmonics of the stiffness count up to this many natural fre
 FEWEST_HARMONICS, MOST_OF_BAND = 6, 20  # of the mesh; how many the resonance lets through is kept within these
 MOST_HARMONICS = 40  # where sensors show them: an accelerometer weighs the highest as the lowest
 EXPECTED_SHAPE = 0.1  # of the mean stiffness over the harmonic: what real teeth add to the ideal wave
-ADVANCE = 0.5  # of x, by which pinion and gear each say differently which teeth carry; nobody knows what these follow
+ADVANCE = 0.5  # of x, by which pinion and gear each say differently which teeth carry; nobody knows what these follow,
+MOST_ADVANCE = 1.0  # ... but either wheel is all of x away from the other: beyond, it stands for something else
 EDGE = 0.1  # of a mesh period, over which a pair takes up its load: as of real teeth, whose corners are relieved
 SERIES = (8, 12, 16, MOST_OF_BAND)  # harmonics of the ideal wave: a kernel is compiled for each of few lengths
 FIRST_RATIO = 0.01  # damping ratio to begin with where none is stated
@@ -265,7 +266,8 @@ def with_shape(fitted: Outcome, evidence: Evidence, harmonics: int) -> Hypothesi
     """
     rough = fitted.hypothesis
     free = tuple(p for p in rough.free if p.name not in PHASED)
-    advance = FreeParameter("contact_advance", 0.0, ADVANCE, deviation=ADVANCE, expected=0.0)
+    within = {"lower": -MOST_ADVANCE, "upper": MOST_ADVANCE, "deviation": ADVANCE, "expected": 0.0}
+    advance = FreeParameter("contact_advance", 0.0, ADVANCE, **within)
     zeros = (0.0,) * harmonics
     edge = max(EDGE, float(rough.given.get(f"{MESH}.edge", 0.0)))
     given = rough.given | {f"{SHAPE}.in_phase": zeros, f"{SHAPE}.quadrature": zeros, f"{MESH}.edge": edge}

@@ -8,7 +8,7 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.declared_units import radian_of
 from gear_damping.explanation.evidence.records import Evidence, all_stand
-from gear_damping.explanation.model.driven_mode import driven_mode
+from gear_damping.explanation.model.driven_mode import driven_mode, opposed_mode
 from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.identification.oscillator.linear_model import moves_one_way
 from gear_damping.identification.output_error.records import FitRecord
@@ -57,8 +57,10 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
         lines = strongest_frequencies(residuals or (), natural)
         one_way = natural == 0 and all(moves_one_way(record) for record in evidence.fit)
         swells = natural > 0 and any(swells_again(record, natural) for record in evidence.fit)
-        mode = driven_mode(evidence.fit, evidence.noise) if natural == 0 and residuals else None
-        return Rig(radian=radian, frequencies=lines, one_way=one_way, swells=swells, mode=mode, **common)
+        if natural == 0 and residuals:
+            driven = evidence.fit, evidence.noise
+            common |= {"mode": driven_mode(*driven), "opposed": opposed_mode(*driven)}
+        return Rig(radian=radian, frequencies=lines, one_way=one_way, swells=swells, **common)
     values["contact_ratio"] = float(prepared.base["contact_ratio"][0])
     pinion, gear = round(values["n_teeth_pinion"]), round(values["n_teeth_gear"])
     lines = strongest_orders(residuals or (), pinion, gear, values["pinion_speed"])

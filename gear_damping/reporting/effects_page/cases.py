@@ -77,6 +77,11 @@ CASES: dict[str, Case] = {
     ),
     "quadratic_stiffness": Case({"coefficient": 0.1 * OSCILLATOR_STIFFNESS}),
     "second_mode": Case({"frequency": 2.5 * OSCILLATOR_STIFFNESS**0.5 / (2 * pi)}),
+    "noncollocated_mode": Case(
+        {"frequency": 2.5 * OSCILLATOR_STIFFNESS**0.5 / (2 * pi), "residue_ratio": 0.5},
+        force=(200.0, 2.0),
+        note="At rest at first; a force of 200 a unit of mass drives both runs at 2 Hz.",
+    ),
     "sine_restoring": Case(
         {"stiffness": OSCILLATOR_STIFFNESS},
         given={"stiffness": 0.0},
