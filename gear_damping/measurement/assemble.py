@@ -101,9 +101,10 @@ class Assembler:
             notes.append(f"{plan.name}: full scale is taken as {factor:.6g} {conversion.unit}")
         values = raw.values * (factor * plan.sensor["polarity"] / plan.sensor["gain"])
         turn = turn_in(conversion.unit)
-        if plan.name != "pinion_angle" and (found := run_over(raw.values, plan.name, plan.column)):
+        is_turned = plan.name == "pinion_angle" or (bool(turn) and begins_again(values, turn))
+        if not is_turned and (found := run_over(raw.values, plan.name, plan.column)):
             findings.append(found)
-        if plan.name == "pinion_angle" or (turn and begins_again(values, turn)):
+        if is_turned:
             values = unwrapped(values, turn, plan.name, notes)
         rounding = rounding_of(values) if record.plan.resample else 0.0
         switches = plan.name in HOLDABLE and _switches(raw, record)

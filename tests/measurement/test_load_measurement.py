@@ -253,6 +253,19 @@ def test_a_deflection_that_begins_again_with_each_turn_is_unwrapped_and_said(tmp
     assert record.notes == ("displacement: unwrapped",)
 
 
+@pytest.mark.parametrize(("count", "unit"), [(4096, "rev, gain: 4096"), (360, "deg")])
+def test_counts_that_are_declared_as_those_of_a_turn_ran_over_no_register(tmp_path, count, unit):
+    """A pendulum about the zero of its encoder; the finding says what to declare, and is gone where that is done."""
+    time = np.arange(2000) / 1000
+    swing = np.round(0.1 * count * np.exp(-time) * np.cos(20 * time))
+    assert [found.kind for found in turning(tmp_path, np.mod(swing, count), "'1'").findings if found.severity != "note"]
+    record = turning(tmp_path, np.mod(swing, count), unit)
+    assert "displacement: unwrapped" in record.notes
+    assert not [found for found in record.findings if found.kind == "run_over"]
+    one = np.ptp(swing) / np.ptp(record.channels["displacement"].values)
+    assert one == pytest.approx(4096 if "rev" in unit else 1)
+
+
 @pytest.mark.parametrize(
     ("degrees", "unit"),
     [
