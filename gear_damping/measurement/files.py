@@ -81,6 +81,7 @@ def read_yaml(path: Path) -> object:
         InputError: no such file, one that cannot be read, not text, not YAML, no keys, or a key appears twice.
     """
     data = f"of a file of data, task=inspect measurement.path={path} writes one to start from"
+    is_yaml = path.suffix.lower() in YAML
     if not path.is_file():
         rule = "is a folder, no file" if path.is_dir() else "no such file"
         held = sorted(one.name for one in path.glob("*.y*ml"))[:1] if path.is_dir() else []
@@ -91,7 +92,6 @@ def read_yaml(path: Path) -> object:
             content = yaml.load(path.read_text(encoding="utf-8-sig"), Loader=_Loader)
     except UnicodeDecodeError as error:
         utf8 = f"save it as UTF-8 ({error.reason})"
-        is_yaml = path.suffix.lower() in YAML
         remedy = f"{utf8}; {data}" if is_yaml else f"{data}; a measurement.yaml: {utf8}"
         raise InputError(Problem("measurement.path", "not UTF-8 text", str(path), remedy)) from None
     except yaml.YAMLError as error:
@@ -99,6 +99,7 @@ def read_yaml(path: Path) -> object:
         where = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
         reason = getattr(error, "problem", None) or str(error)
         remedy = next((cure for word, cure in _CURES.items() if word in reason), _CURE)
+        remedy = remedy if is_yaml else f"{data}; a measurement.yaml: {remedy}"
         raise InputError(Problem(str(path), f"not valid YAML{where}: {reason}", remedy=remedy)) from None
     if isinstance(content, str):
         rule, remedy = "holds text without keys, which is no measurement.yaml", f"write `key: value` lines; {data}"

@@ -342,6 +342,13 @@ def test_a_yaml_that_cannot_be_read_is_one_error(tmp_path, text, said):
         load_measurement(path)
 
 
+@pytest.mark.parametrize("head", ["Sample rate: 500 Hz\nlogger: 3\nt,x\n", "[ready]\nt\tx\n", "t,x\n%d,%d\n"])
+def test_a_file_of_data_in_its_place_is_answered_with_the_task_that_reads_one(tmp_path, head):
+    (tmp_path / "run.csv").write_text(f"{head}0,1\n1,2\n")
+    with pytest.raises(InputError, match=r"task=inspect measurement\.path=\S+run\.csv writes one to start from"):
+        load_measurement(tmp_path / "run.csv")
+
+
 def test_a_yaml_that_is_not_there_or_not_text_is_one_error(tmp_path):
     with pytest.raises(InputError, match="no such file"):
         load_measurement(tmp_path / "measurement.yaml")
