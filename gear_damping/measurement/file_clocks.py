@@ -11,6 +11,9 @@ from gear_damping.measurement.record import Finding
 from gear_damping.measurement.time_column import COUNTER, is_time, numbers_left_out, stamped_rate
 from gear_damping.measurement.timebase import RATE_TOLERANCE
 
+_AS_STATED = (
+    0.1  # of a rate that is set, by which a recorder may be slower or faster: no unit and no divider is as near
+)
 _DOUBTFUL = 1.0  # Hz: LabVIEW writes it where no rate was set, and others a step in ms that says no unit
 
 
@@ -91,6 +94,17 @@ class FileClocks:
         if abs(rate / stated - 1) <= RATE_TOLERANCE:
             return ()
         return (_rate_conflict(rate, f"'{name}' beside the table says", stated),)
+
+    def beside_stamps(self, rate: float, first: int, stop: int) -> tuple[Finding, ...]:
+        """A note where the file states another rate than that of its stamps in the declared unit, in Hz."""
+        name, stated = self.stated(first, stop) or ("", rate)
+        if abs(rate / stated - 1) <= _AS_STATED:
+            return ()
+        message = (
+            f"'{name}' beside the table says {stated:.6g} Hz and the time stamps {rate:.6g} Hz, which was used; "
+            "correct the unit of time where it is wrong, or give sampling_rate in its place where the stamps are"
+        )
+        return (Finding("rate_conflict", message, channel="time", severity="note"),)
 
     def stated(self, first: int, stop: int) -> tuple[str, float] | None:
         """The words that state a rate beside the table, of the block that the rows lie in, and the rate in Hz."""

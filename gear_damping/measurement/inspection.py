@@ -162,6 +162,7 @@ def inspect_table(table: Table, clock: str | int | None = None) -> Inspection:
     untimed = may_be_rate is None and not any(table.clock(k) for k in range(len(columns)))
     stamps = find_stamps([c if clock in (None, c.reference) else _NOTHING for c in columns], untimed)
     stamps = None if stamps and _numbers_rows(table, columns[stamps.index], stamps) else stamps
+    stamps = stamps and _at_the_stated_rate(table, columns[stamps.index], stamps)
     if stamps is None:
         _refuse_spectrum(table, columns)
     columns, some = _where_filled(columns) if stamps else (columns, "")
@@ -186,6 +187,18 @@ def _numbers_rows(table: Table, column: Column, stamps: Stamps) -> bool:
     if table.stated_rate is None or not stamps.guessed or unit_by_name(column.reference):
         return False
     return counts_rows(column.inside) and abs(table.stated_rate[1] * stamps.in_seconds - 1) > _OTHER_PACE
+
+
+def _at_the_stated_rate(table: Table, column: Column, stamps: Stamps) -> Stamps:
+    """Stamps whose unit is a guess in the one with which they run at the rate that the file states, if there is one."""
+    if table.stated_rate is None or not stamps.guessed or unit_by_name(column.reference):
+        return stamps
+    said, rate = table.stated_rate
+    rates = {unit: stamped_rate(unit, column.inside) for unit in ENDINGS}
+    unit = next((unit for unit, own in rates.items() if own and abs(own / rate - 1) <= _OTHER_PACE), stamps.unit)
+    if unit == stamps.unit:
+        return stamps
+    return replace(stamps, unit=unit, guessed=f"with it they run at {rate:.6g} Hz, as '{said}' says")
 
 
 def _by_own_clock(found: Inspection, column: Column) -> Column:

@@ -235,7 +235,9 @@ class RawReader:
 
     def _base(self) -> TimeBase | None:
         if self.plan.timing.column is not None:
-            return self._stamped(self.plan.timing, f"{self.plan.key}.channels.time", self.sliced, self.rows.first)
+            base = self._stamped(self.plan.timing, f"{self.plan.key}.channels.time", self.sliced, self.rows.first)
+            other = self.clocks.beside_stamps(base.sampling_rate * self.rows.step, self.rows.first, self.rows.stop)
+            return replace(base, findings=(*base.findings, *other))
         base = self._steady()
         filled = self.rows.filled
         if base is None or not filled:

@@ -104,3 +104,33 @@ def test_numbers_of_rows_beside_a_stated_rate_are_no_time(tmp_path, head):
 def test_stamps_that_a_stated_rate_agrees_with_stay(tmp_path):
     found = inspect_table(table_of(tmp_path, "#CLOCK:1000us\n", numbered=True))
     assert (found.time.unit, found.rate) == ("ms", pytest.approx(1000.0))
+
+
+@pytest.mark.parametrize(("step", "unit"), [(0.5, "ms"), (500, "us"), (0.0005, "s")])
+def test_a_stated_rate_tells_in_which_unit_stamps_without_one_count(tmp_path, step, unit):
+    head = "Sample rate: 2000 Hz\n\nt,x\n"
+    (tmp_path / "a.csv").write_text(head + "".join(f"{k * step:.10g},{x}\n" for k, x in enumerate(MOTION)))
+    found = inspect_table(read_table(tmp_path / "a.csv"))
+    assert (found.time.unit, found.rate) == (unit, pytest.approx(RATE))
+    assert ("as 'Sample rate' says" in found.time.guessed) == (unit == "ms")
+
+
+@pytest.mark.parametrize(
+    ("unit", "head", "said"),
+    [
+        ("s", "Sample rate: 2 kHz", ""), ("s", "Sample rate: 2.04 kHz", ""), ("s", "Sample rate: 2 kfoo", ""),
+        ("s", "Sample rate: 1 kHz", "'Sample rate' beside the table says 1000 Hz and the time stamps 2000 Hz"),
+        ("ms", "Abtastrate: 2 kHz", "'Abtastrate' beside the table says 2000 Hz and the time stamps 2e+06 Hz"),
+        ("s", "Sample interval: 1 ms", "'Sample interval' beside the table says 1000 Hz and the time stamps 2000 Hz"),
+    ],
+)  # fmt: skip
+def test_a_stated_rate_that_stamps_contradict_is_said(tmp_path, unit, head, said):
+    (tmp_path / "a.csv").write_text(f"{head}\n\nt;x\n" + "".join(f"{k / RATE};{x}\n" for k, x in enumerate(MOTION)))
+    (tmp_path / "a.yaml").write_text(
+        "system: oscillator\nrecords:\n- file: a.csv\n  channels:\n    time: {column: t, unit: "
+        + unit
+        + "}\n    displacement: {column: x, unit: V}\n"
+    )
+    found = [one for one in load_measurement(tmp_path / "a.yaml").findings if one.kind == "rate_conflict"]
+    assert [one.message.partition(", which was used; correct the unit")[0] for one in found] == [said] * bool(said)
+    assert all(one.severity == "note" for one in found)
