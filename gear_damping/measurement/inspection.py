@@ -45,6 +45,7 @@ from gear_damping.units import to_si
 
 _SPARSE = 0.5  # of the longest stretch of values of any column: one with a shorter one is filled here and there
 _FREQUENCIES = ("Hz", "kHz")  # units of the axis of a spectrum; rad/s are as well those of a shaft that runs up
+_ORDERS = re.compile(r"\s*(orders?|ordnung|ordre)\s*([(\[].*)?$", re.I)  # the name of the same axis by turns of a shaft
 _AXIS = 0.1  # of a step, within which the lines of a spectrum stand apart, as they were rounded
 _EVEN = 1e-6  # of an advance from sample to sample: differences below it are rounding
 _ANY_SIGNAL = re.compile(r"^(values?|data|signal|[xyzt]|time\w*)$", re.I)  # a name that tells no record from a channel
@@ -223,7 +224,7 @@ def _refuse_lying(table: Table) -> None:
 
 
 def _refuse_spectrum(table: Table, columns: Sequence[Column]) -> None:
-    """Refuse what goes over frequency: a column in Hz that rises in even steps, where nothing is time.
+    """Refuse what goes over frequency: a column in Hz, or of orders, that rises in even steps, where nothing is time.
 
     Raises:
         InputError: there is one.
@@ -231,7 +232,7 @@ def _refuse_spectrum(table: Table, columns: Sequence[Column]) -> None:
     for column in columns:
         steps = np.diff(column.inside)
         if (
-            column.unit in _FREQUENCIES
+            (column.unit in _FREQUENCIES or (_ORDERS.match(str(column.reference)) and not counts_rows(column.inside)))
             and steps.size >= LEAST_SAMPLES
             and steps.min() > 0
             and np.ptp(steps) < _AXIS * steps[0]

@@ -26,6 +26,7 @@ from gear_damping.measurement.stamp_units import (
     may_count_rows,
     refuse_endless,
     refuse_other_clock,
+    refuse_other_kind,
     refuse_other_unit,
     refuse_row_numbers,
     refuse_steps,
@@ -324,6 +325,7 @@ class RawReader:
         return base
 
     def _stamped(self, timing: TimePlan, key: str, read: ReadColumn, first: int) -> TimeBase:
+        refuse_other_kind(self.table, timing, key, self.source)
         stamps = read(timing.column, key)
         refuse_row_numbers(self.table, timing, key, stamps, read, self.source)
         one = self._in_seconds(timing, key)

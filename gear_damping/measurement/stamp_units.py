@@ -32,6 +32,7 @@ from gear_damping.units import is_of_kind, to_si
 _TELLS = 10.0  # of its own largest steps, from which the length of a clock tells something
 _FEW, _GROSSLY = 3.0, 2.0  # of these steps, from which it tells whether stamps last so many times as long, or as short
 _MOST_LEVELS = 0.25  # of the samples: steps repeat, and stamps of rows in another order do not
+_BEHIND_A_NAME = re.compile(r"\s*[(\[{/].*$")  # its unit
 _STEPS_NAMED = re.compile(r"(^|[_\W])(dt|delta|diff|step)([_\W]|$)", re.I)
 _EVENLY = 0.05  # of a step, by which those of a clock beside row numbers may differ: stamps are rounded
 MOST_SAMPLES = MAX_BYTES // 8  # of a record: as many numbers as the largest file that is read holds
@@ -63,6 +64,23 @@ def refuse_other_unit(
     if finer is not None:
         remedy = f"write unit: {finer}, or give sampling_rate instead of the time column"
         raise InputError(Problem(f"{key}.unit", rule, timing.unit, remedy, source))
+
+
+def refuse_other_kind(table: Table, timing: TimePlan, key: str, source: str) -> None:
+    """Refuse stamps whose header says a unit of another kind, an angle or a frequency, and whose name says no time.
+
+    Raises:
+        InputError: it does.
+    """
+    place = table.index(timing.column, key)
+    name, header = table.names[place], table.unit(place)
+    if header is None or NAMED.search(_BEHIND_A_NAME.sub("", name)) or not is_of_kind(header, header):
+        return
+    if is_of_kind(header, "s") or is_of_kind(header, "1"):
+        return
+    rule = f"the header of column '{timing.column}' says '{header}', which is no unit of time"
+    remedy = "name the column of the time, or give sampling_rate in its place; what goes over an angle or a frequency "
+    raise InputError(Problem(key, rule, timing.column, remedy + "is to be exported over time", source))
 
 
 def refuse_row_numbers(

@@ -45,7 +45,9 @@ _ADVANCING = 0.9  # share of the steps of a named column that go forward
 _SHORT = re.compile(r"^t[a-z]?\d*(_\w+)?$", re.I)  # t1, tb_n: a time only where its steps are even
 _FIRST = re.compile(r"\[0\]\s*$")  # the first column of a matrix, which says nothing of its own
 _LOOSELY = 0.5  # of the median step; how far the steps of a first column without a name may differ
-_NO_TIME = re.compile(r"speed|rpm|omega|drehzahl|freq|volt|curr|weg|^f$", re.I)  # what may rise evenly and is no time
+_NO_TIME = re.compile(  # what may rise evenly and is no time
+    r"speed|rpm|omega|drehzahl|freq|volt|curr|weg|^f$|\border|ordnung|^revs?$|umdreh", re.I
+)
 _NEARLY = 0.1  # of the median step; how far most steps of a column that no name calls time may differ
 _EVEN = 0.05  # of the median step; how far the steps of an unnamed column may differ
 COUNTER = re.compile(

@@ -64,6 +64,21 @@ def test_a_name_that_says_seconds_is_heeded(name, is_refused, tmp_path):
         assert read(tmp_path, timed("ms", name), table).records[0].sampling_rate == pytest.approx(2e5)
 
 
+@pytest.mark.parametrize("column", ["angle [deg]", "Freq (Hz)", "Revolutions [rev]", "x / mm"])
+def test_a_header_that_says_no_unit_of_time_is_refused_as_the_time(column, tmp_path):
+    message = refused(tmp_path, timed("s", column), {column: 2 * TIME, "x": MOTION})
+    assert f"channels.time = '{column}'" in message
+    assert "which is no unit of time; remedy: name the column of the time, or give sampling_rate" in message
+
+
+@pytest.mark.parametrize("column", ["Time (A)", "t [m]", "k (1)", "X [raw]", "X [5 ms]"])
+def test_a_name_of_time_or_what_is_no_unit_beside_it_is_taken(column, tmp_path):
+    unit = "ms" if "ms" in column else "s"
+    channels = {"time": {"column": column} | ({} if unit == "ms" else {"unit": unit}), "displacement": X}
+    (record,) = read(tmp_path, channels, {column: TIME, "x": MOTION}).records
+    assert record.time.size == TIME.size
+
+
 def test_a_step_above_the_table_beside_another_rate_is_said(tmp_path):
     channels, table = {"sampling_rate": "400 Hz", "displacement": X}, {"x": MOTION, "F": FORCE}
     (record,) = read(tmp_path, channels, table, "Delta_X,0.005\n").records

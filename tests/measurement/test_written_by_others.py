@@ -426,6 +426,13 @@ def test_rows_in_brackets_are_read(tmp_path, name):
     assert table.values(1) == pytest.approx(WAVE, abs=1e-9)
 
 
+def test_a_table_over_orders_is_no_record_and_turns_are_no_time(tmp_path):
+    rows = "\n".join(f"{k / 8:.3f},{k % 7}" for k in range(200))
+    with pytest.raises(InputError, match=r"goes over frequency .column 'Order'.*remedy: export the time records"):
+        inspect_table(_table(tmp_path, "Order,TE (um)\n" + rows))
+    assert inspect_table(_table(tmp_path, "rev,TE (um)\n" + rows, "b.csv")).time is None
+
+
 def test_a_table_over_frequency_is_no_record(tmp_path):
     rows = "\n".join(f"{k / 4:.3f},{k % 7},{k % 5}" for k in range(200))
     with pytest.raises(
