@@ -20,6 +20,7 @@ from gear_damping.measurement.formats.not_applied import not_applied, said_of
 from gear_damping.measurement.formats.number_texts import is_number
 from gear_damping.measurement.formats.stated_rate import rate_beside
 from gear_damping.measurement.formats.table import ArrayTable, Held, Table, held_arrays, unreadable
+from gear_damping.measurement.formats.units_beside import units_beside
 
 SUFFIXES = (".json", ".jsonl", ".ndjson")
 
@@ -37,15 +38,19 @@ def read(path: Path, max_bytes: int) -> Table:
         InputError: not JSON, or it holds no list of numbers.
     """
     with unreadable(path, "not a readable JSON file", "export it again, or as CSV"):
-        held, left_out, single = [], [], {}
+        held, left_out, single, texts = [], [], {}, {}
         for name, values, unit in _lists("", _parsed(path.read_bytes())):
             array, begins = _array(values)
             own, other = held_arrays({name: array})
             if array.size == 1 and own:
                 single[name] = array
+            if len(values) == 1 and isinstance(values[0], str):
+                texts[name] = values[0]
             begun = None if begins is None else lambda begins=begins: begins
             held += [replace(one, unit=unit, begins=begun) for one in own]
             left_out += other
+        units = units_beside((one.name for one in held if one.shape != (1,)), texts)
+        held = [replace(one, unit=one.unit or units.get(one.name)) for one in held]
         table = ArrayTable(path, _channels(held), left_out)
     table.stated_rate = rate_beside(single)
     table.not_applied = _scales(held, single)

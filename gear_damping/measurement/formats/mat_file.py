@@ -2,7 +2,7 @@
 
 Fields of structures are `run.y`, elements of cells and of arrays of structures `c[0]`, `run.y[0]`, columns of a cell
 array with names above its numbers `raw.t [s]`. Where each element of an array of structures has a name and one vector,
-as in MAT files made of TDMS files, that is its name too.
+as in MAT files made of TDMS files, that is its name too. A text beside one, `Unit` or `x_unit`, is its unit.
 """
 
 import re
@@ -33,6 +33,7 @@ from gear_damping.measurement.formats.table import (
     refuse_size,
     unreadable,
 )
+from gear_damping.measurement.formats.units_beside import units_beside
 
 SUFFIXES = (".mat",)
 DEADLY = True  # a damaged file may end the process
@@ -63,14 +64,22 @@ def read(path: Path, max_bytes: int) -> Table:
         found = dict(_flat(content, ""))
     arrays = {name: value for name, value in found.items() if isinstance(value, np.ndarray)}
     held, left_out = held_arrays(arrays)
-    own = _own_names(found)
+    own, units = _own_names(found), units_beside(*_apart(found))
+    held = [replace(one, unit=units.get(one.name)) for one in held]
     held = [replace(one, name=own[one.name], also=one.name) if one.name in own else one for one in held]
-    held = [replace(one, unit=bracket_unit(one.name)) for one in held]
+    held = [replace(one, unit=bracket_unit(one.name) or one.unit) for one in held]
     texts = {name: "text" if isinstance(value, np.str_) else value for name, value in found.items()}
     left_out += [f"{name} ({what})" for name, what in texts.items() if name not in arrays]
     table = ArrayTable(path, held, left_out)
     table.stated_rate = rate_beside({name: one for name, one in arrays.items() if not _is_over_something(name, found)})
     return table
+
+
+def _apart(found: Mapping[str, NDArray | str]) -> tuple[list[str], dict[str, str]]:
+    """The names of the arrays of more than one real number, and the texts by their names."""
+    arrays = {name: value for name, value in found.items() if isinstance(value, np.ndarray)}
+    vectors = [name for name, value in arrays.items() if is_real(value.dtype) and value.size > 1]
+    return vectors, {name: str(value) for name, value in found.items() if isinstance(value, np.str_)}
 
 
 def _is_over_something(name: str, found: Mapping[str, NDArray | str]) -> bool:

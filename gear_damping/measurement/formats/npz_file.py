@@ -1,5 +1,6 @@
 """Arrays of numpy, one in an NPY file or several in an NPZ archive; nothing in them is ever executed."""
 
+from dataclasses import replace
 from pathlib import Path
 from zipfile import ZipFile
 
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 
 from gear_damping.measurement.formats.stated_rate import rate_beside
 from gear_damping.measurement.formats.table import ArrayTable, Table, held_arrays, refuse_size, unreadable
+from gear_damping.measurement.formats.units_beside import units_beside
 
 SUFFIXES = (".npz", ".npy")
 
@@ -27,7 +29,10 @@ def read(path: Path, max_bytes: int) -> Table:
         with np.load(path, allow_pickle=False) as archive:
             parts = [_fields(name, archive[name]) for name in archive.files]
     arrays = {name: array for part in parts for name, array in part.items()}
-    table = ArrayTable(path, *held_arrays(arrays))
+    held, left_out = held_arrays(arrays)
+    texts = {name: str(one.item()) for name, one in arrays.items() if one.dtype.kind == "U" and one.size == 1}
+    units = units_beside((one.name for one in held if max(one.shape) > 1), texts)
+    table = ArrayTable(path, [replace(one, unit=units.get(one.name, one.unit)) for one in held], left_out)
     table.stated_rate = rate_beside(arrays)
     return table
 
