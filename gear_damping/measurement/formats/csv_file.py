@@ -12,7 +12,6 @@ from typing import Any
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.column_kinds import counts_rows
-from gear_damping.measurement.formats.axis_units import axis_units
 from gear_damping.measurement.formats.blocks import blocks_of, listed
 from gear_damping.measurement.formats.cells import (
     FEWEST_BEHIND,
@@ -37,6 +36,7 @@ from gear_damping.measurement.formats.table import Table, is_real
 from gear_damping.measurement.formats.text_header import of_oscilloscope, text_header, without_other_headers
 from gear_damping.measurement.formats.text_lines import BEGINS, HEAD, IS_COMMENT, Text, bytes_of
 from gear_damping.measurement.formats.timeseries_text import timeseries_table
+from gear_damping.measurement.formats.units_above import axis_units, units_of_names
 from gear_damping.units import is_of_kind
 
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".log", ".prn", ".gz")
@@ -78,8 +78,8 @@ def read(path: Path, max_bytes: int) -> Table:
     lines = _Lines(path, max_bytes, first_line)
     above = [row for line, row in islice(text.rows(), HEAD) if line < first_line]
     numbered = not header.name(0) and is_real(frame[0].dtype) and counts_rows(frame[0].to_numpy())
-    axes = axis_units(above, width, numbered)
-    units = [header.unit(k) or axes.get(k) for k in range(width)]
+    said = units_of_names(above, header.names) | axis_units(above, width, numbered)
+    units = [header.unit(k) or said.get(k) for k in range(width)]
     columns = [Cells(header.name(k), units[k], frame[k].to_numpy(), lines, header.also(k)) for k in range(width)]
     columns, below = without_footer(columns)
     if not below and not blocks:

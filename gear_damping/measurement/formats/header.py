@@ -37,6 +37,7 @@ _LABELS = {  # of a row, in a cell before the columns
 }
 _BEGUN = re.compile(r"^timestamps?$", re.I)  # the label of when a channel began, which is over time
 _CELL_SIGNS = (",", ";", "\t", "|")  # between names, where other signs stand between the values below
+_LABEL = re.compile(r"^(?:unit|einheit)(?:en|s)?\b\s*[:=]?\s*", re.I)  # before the first of a row of units
 _LOGGER = "TOA5"  # the first word in files of Campbell's loggers,
 _OF_LOGGER = 4  # ... and rows of their head: the station, names, units, what was done with the values
 _RECORDER = ("TraceName", "VUnit")  # before the names and the units in files of Yokogawa's recorders
@@ -325,6 +326,11 @@ def is_units(row: Sequence[str]) -> bool:
     named = [cell for cell in cells if cell not in _NO_UNIT]
     counts = any if all(_IN_BRACKETS.fullmatch(cell.strip()) for cell in row) else all
     return bool(named) and not _has_number(row) and counts(_is_unit(as_ours(cell)) for cell in named)
+
+
+def without_label(row: Sequence[str]) -> list[str]:
+    """The cells of a row of units without what says that they are some: `Unit` in a cell of its own, `Units: s`."""
+    return [_LABEL.sub("", row[0].strip()), *row[1:]] if row else []
 
 
 def _is_unit(cell: str) -> bool:

@@ -1,0 +1,71 @@
+"""Units that lines above a table say are those of its columns, and contradict another unit."""
+
+import numpy as np
+import pytest
+
+from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.load import load_measurement
+
+TIME = np.arange(100) / 100
+ROWS = "".join(f"{t:.2f},{np.cos(9 * t):.5f},{np.sin(9 * t):.5f}\n" for t in TIME)
+
+
+def units_of(folder, head, rows=ROWS):
+    (folder / "a.csv").write_text(head + rows, encoding="utf-8")
+    table = read_table(folder / "a.csv")
+    return [table.unit(k) for k in range(len(table.names))]
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "s,mm,g\nTime,Disp,Acc\n", "Units: s,mm,g\nTime,Disp,Acc\n", "# Units: s mm g\nTime,Disp,Acc\n",
+        "# s, mm, g\nTime,Disp,Acc\n", "Einheiten: s,mm,g\nTime,Disp,Acc\n", "[s],[mm],[g]\nTime,Disp,Acc\n",
+        "Time: s\nDisp: mm\nAcc: g\nTime,Disp,Acc\n", "# time [s]\n# disp [mm]\n# acc [g]\nTime,Disp,Acc\n",
+        "Channel,Unit,Range\nTime,s,\nDisp,mm,10\nAcc,g,5\n\nTime,Disp,Acc\n",
+    ],
+)  # fmt: skip
+def test_lines_above_the_names_give_units(tmp_path, head):
+    assert units_of(tmp_path, head) == ["s", "mm", "g"]
+
+
+def test_a_row_of_units_before_the_names_may_be_labelled(tmp_path):
+    rows = "".join(f",{row}\n" for row in ROWS.splitlines())
+    assert units_of(tmp_path, "Units,s,mm,g\nName,Time,Disp,Acc\n", rows) == [None, "s", "mm", "g"]
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "Mode: A\nDisp: A\nTime,Disp,Acc\n", "Operator: mm\nTime,Disp,Acc\n", "Acc: raw\nTime,Disp,Acc\n",
+        "Time: 12:30\nDisp: sensor 3, mm\nTime,Disp,Acc\n", "s,mm\nTime,Disp,Acc\n", "left,mm,g\nTime,Disp,Acc\n",
+    ],
+)  # fmt: skip
+def test_lines_that_say_something_else_give_none(tmp_path, head):
+    assert units_of(tmp_path, head) == [None, None, None]
+
+
+def test_what_stands_beside_the_names_goes_before_it(tmp_path):
+    assert units_of(tmp_path, "Disp: um\nTime (s),Disp,Acc (g)\n") == ["s", "um", "g"]
+    assert units_of(tmp_path, "Disp: um\nTime,Disp,Acc\ns,mm,g\n") == ["s", "mm", "g"]
+
+
+def test_names_that_look_like_units_are_names(tmp_path):
+    assert units_of(tmp_path, "t,mm,g\n") == [None, None, None]
+
+
+def test_the_unit_of_a_file_is_that_of_its_only_signal(tmp_path):
+    rows = "".join(f"{t:.2f},{np.cos(9 * t):.5f}\n" for t in TIME)
+    assert units_of(tmp_path, "# Unit: mm\ntime,Disp\n", rows) == [None, "mm"]
+    assert units_of(tmp_path, "Unit: 7\ntime,Disp\n", rows) == [None, None]
+    assert units_of(tmp_path, "Unit: mm\nTime,Disp,Acc\n") == [None, None, None]
+
+
+def test_they_contradict_the_unit_of_a_declaration(tmp_path):
+    (tmp_path / "a.csv").write_text("s,mm,g\nTime,Disp,Acc\n" + ROWS)
+    (tmp_path / "a.yaml").write_text(
+        "system: oscillator\nrecords:\n- file: a.csv\n  channels:\n    time: {column: Time, unit: s}\n"
+        "    displacement: {column: Disp, unit: m}\n"
+    )
+    (found,) = [one for one in load_measurement(tmp_path / "a.yaml").findings if one.kind == "unit_conflict"]
+    assert found.message.startswith("the header of column 'Disp' says 'mm' and the YAML 'm'")
