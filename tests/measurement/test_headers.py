@@ -265,6 +265,23 @@ def test_a_row_above_that_is_shorter_than_the_table_names_what_it_can(tmp_path):
     assert table.values(1).size == 60
 
 
+@pytest.mark.parametrize(
+    ("names", "firsts", "behind"),
+    [
+        (["Note"], [["start"]], 1), (["Temp"], [["21.5"]], 1), (["Temp", "Operator"], [["21.5", "AB"]], 2),
+        (["Note", "Temp"], [["start", "21"], ["", "22"]], 2),
+    ],
+)  # fmt: skip
+def test_columns_that_have_cells_in_the_first_rows_alone_leave_the_table_its_names(tmp_path, names, firsts, behind):
+    values = rows(60, cells=2, sign=",")
+    lines = [",".join([one, *more]) for one, more in zip(values, firsts, strict=False)]
+    lines += [one + "," * behind for one in values[len(firsts) :]]
+    table = table_of(tmp_path, ["Time,Disp," + ",".join(names), *lines])
+    assert table.names == ("Time", "Disp", *names)
+    assert table.values(1).size == 60
+    assert not table.notes
+
+
 def test_rows_that_say_before_the_columns_what_they_hold_are_the_header(tmp_path):
     head = ["imc FAMOS ASCII", "Name\tWeg\tKraft", "Einheit\tmm\tN", "X0\t0\t0", "DeltaX\t0,01\t0,01", ""]
     table = table_of(tmp_path, [*head, *(row.replace(".", ",") for row in rows(60, cells=2, sign="\t"))])

@@ -205,10 +205,20 @@ def _below_preamble(rows: list[list[str]], width: int) -> Header | None:
         return None  # the table itself, a row of which has too many cells
     if any(k and _is_named(rows[k - 1], width) and _is_body(rows[k][:width], width) for k in wide):
         return None  # its first row, behind whose last column a sheet left a figure of its own
+    if _begins_wide(rows[:start], width) and len(body[0]) == len(rows[start - 1]):
+        return None
     if not texts:
         return Header(("",) * width, (), start, start)
     header = find_header(rows[start:], width)
     return replace(header, first=header.first + start, skipped=header.skipped + start)
+
+
+def _begins_wide(rows: list[list[str]], width: int) -> bool:
+    """Whether rows end in names and the first values of a table, whose last columns have cells in these alone."""
+    first = next((k for k, row in enumerate(rows) if _is_body(row[:width], width)), 0)
+    if not first or not all(_is_body(row[:width], width) for row in rows[first:]):
+        return False
+    return _is_named(rows[first - 1], filled(rows[first - 1])) and filled(rows[first - 1]) >= max(map(filled, rows))
 
 
 def _is_named(row: list[str], width: int) -> bool:
