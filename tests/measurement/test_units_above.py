@@ -69,3 +69,37 @@ def test_they_contradict_the_unit_of_a_declaration(tmp_path):
     )
     (found,) = [one for one in load_measurement(tmp_path / "a.yaml").findings if one.kind == "unit_conflict"]
     assert found.message.startswith("the header of column 'Disp' says 'mm' and the YAML 'm'")
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "Column 1: Time [ms]\nColumn 2: Disp [um]\nColumn 3: Acc [g]\n",
+        "# col0: Time [ms]\n# col1: Disp [um]\n# col2: Acc [g]\n", "# 1: Time [ms]\n# 2: Disp [um]\n# 3: Acc [g]\n",
+        "Rig 7\nKanal 1 = Time [ms]\nKanal 2 = Disp [um]\nKanal 3 = Acc [g]\n\n",
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("sign", [",", "\t", " "])
+def test_columns_that_are_listed_by_number_have_these_names_and_units(tmp_path, head, sign):
+    assert units_of(tmp_path, head, ROWS.replace(",", sign)) == ["ms", "um", "g"]
+    table = read_table(tmp_path / "a.csv")
+    assert table.names == ("Time [ms]", "Disp [um]", "Acc [g]")
+    assert len(table.values(0)) == TIME.size
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "Channel 1: Disp [um]\nChannel 2: Acc [g]\n",  # of three columns, one of which is the time
+        "1: switch on\n2: wait\n3: go\n",
+    ],
+)
+def test_a_list_of_something_else_names_no_columns(tmp_path, head):
+    assert units_of(tmp_path, head) == [None, None, None]
+    assert read_table(tmp_path / "a.csv").names == ("", "", "")
+
+
+def test_beside_a_row_of_names_such_a_list_gives_units_alone(tmp_path):
+    listed = "Channel 1: Time [ms]\nChannel 2: Disp [um]\nChannel 3: Acc\n"
+    assert units_of(tmp_path, listed + "t,x,a\n") == ["ms", "um", None]
+    assert read_table(tmp_path / "a.csv").names == ("t", "x", "a")

@@ -36,7 +36,7 @@ from gear_damping.measurement.formats.table import Table, is_real
 from gear_damping.measurement.formats.text_header import of_oscilloscope, text_header, without_other_headers
 from gear_damping.measurement.formats.text_lines import BEGINS, HEAD, IS_COMMENT, Text, bytes_of
 from gear_damping.measurement.formats.timeseries_text import timeseries_table
-from gear_damping.measurement.formats.units_above import axis_units, units_of_names
+from gear_damping.measurement.formats.units_above import axis_units, listed_names, units_of_names
 from gear_damping.units import is_of_kind
 
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".log", ".prn", ".gz")
@@ -77,6 +77,7 @@ def read(path: Path, max_bytes: int) -> Table:
             frame = frame[~(frame == "").all(axis=1)]  # rows of delimiters alone
     lines = _Lines(path, max_bytes, first_line)
     above = [row for line, row in islice(text.rows(), HEAD) if line < first_line]
+    header = _as_listed(header, above, width, text.delimiter)
     numbered = not header.name(0) and is_real(frame[0].dtype) and counts_rows(frame[0].to_numpy())
     said = units_of_names(above, header.names) | axis_units(above, width, numbered)
     units = [header.unit(k) or said.get(k) for k in range(width)]
@@ -108,6 +109,15 @@ def read(path: Path, max_bytes: int) -> Table:
     if decimal == ",":
         table.notes += (decimal_commas(path, _with_commas(text, first_line, parted, table)),)
     return table
+
+
+def _as_listed(header: Header, above: Sequence[Sequence[str]], width: int, sign: str) -> Header:
+    """The header with the names that lines above it list by number, where no row holds names but such a line."""
+    listed = listed_names(above, width, sign)
+    last = " ".join(header.names)
+    if not listed or (last.strip() and not last.endswith(listed[-1])):
+        return header
+    return replace(header, names=listed, units=(), skipped=max(header.skipped - width, 0))
 
 
 def _refuse_long_form(path: Path, columns: Sequence[Cells]) -> None:

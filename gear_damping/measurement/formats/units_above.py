@@ -1,10 +1,10 @@
-"""Units that lines above a table say: of an axis, `X Units: ms`, of a column by its name, `Disp: mm`, or of all."""
+"""Units and names that lines above a table say: `X Units: ms`, `Disp: mm`, a row of units, `Column 1: Time [ms]`."""
 
 import re
 from collections.abc import Iterable, Sequence
 
 from gear_damping.measurement.formats.bracket_words import is_known
-from gear_damping.measurement.formats.header import is_units, without_label
+from gear_damping.measurement.formats.header import bracket_unit, is_units, without_label
 from gear_damping.measurement.formats.unit_words import as_ours
 from gear_damping.units import is_of_kind
 
@@ -15,6 +15,11 @@ _ALONE = re.compile(r"^[#%/;*! ]*(?:units?|einheit)\s*[:=]\s*(?P<unit>\S+)\s*$",
 _SIGNS = "#%/;*! \t"  # before a line
 _OF_A_CURVE = 2  # columns: beside more of them nobody says which is the other axis
 _BEHIND_A_NAME = re.compile(r"\s*[:=]\s*|\s+(?=[\[(])")
+_LISTED = re.compile(  # `Column 1: Time [ms]`, `# col0: time (s)`, `Kanal 2 = Weg in mm`
+    r"^(?:[#%/;*! ]*(?:col(?:umn)?|spalte|colonne|columna|colonna|channel|chan|ch|kanal|signal)\.?[ _#]*|[#%][#% ]*)"
+    r"(?P<number>\d+)\s*[:=)\-]\s*(?P<name>[^\W\d_].*?)\s*$",
+    re.I,
+)
 _SIDE = "A"  # as often that of a machine, or a mode
 
 
@@ -44,7 +49,9 @@ def units_of_names(above: Iterable[Sequence[str]], names: Sequence[str]) -> dict
         names: Of the columns, "" for none.
     """
     names = [name.strip() for name in names]
-    found: dict[int, str] = {}
+    above = list(above)
+    listed = [bracket_unit(one) or "" for one in listed_names(above, len(names), " ")]
+    found = {k: unit for k, one in enumerate(listed) if is_known(unit := as_ours(one))}
     for row in above:
         cells = [row[0].lstrip(_SIGNS), *row[1:]] if row else [""]
         cells = [cell.strip(" \t\"'") for cell in cells]
@@ -52,6 +59,20 @@ def units_of_names(above: Iterable[Sequence[str]], names: Sequence[str]) -> dict
             continue  # the names themselves
         found |= _row_of_units(cells, len(names)) or _unit_of_one(cells, names)
     return found
+
+
+def listed_names(above: Iterable[Sequence[str]], width: int, sign: str) -> tuple[str, ...]:
+    """The names of all columns, where lines above the table list them by their numbers from 0 or 1 on; else ().
+
+    Args:
+        above: The cells of the lines above the table.
+        width: The number of its columns.
+        sign: What parts its cells.
+    """
+    found = [one for row in above if (one := _LISTED.match(sign.join(row)))]
+    numbers = [int(one["number"]) for one in found]
+    is_whole = len(numbers) == width and numbers in (list(range(width)), list(range(1, width + 1)))
+    return tuple(one["name"] for one in found) if is_whole else ()
 
 
 def _row_of_units(cells: Sequence[str], width: int) -> dict[int, str]:
