@@ -21,6 +21,7 @@ from scipy.io.matlab import MatlabFunction, MatlabOpaque, MatReadWarning, matfil
 
 from gear_damping.measurement.formats.header import bracket_unit
 from gear_damping.measurement.formats.mat_cells import MIXED, columns_of, is_scattered
+from gear_damping.measurement.formats.not_applied import said_beside
 from gear_damping.measurement.formats.octave_text import BEGIN as OCTAVE
 from gear_damping.measurement.formats.octave_text import octave_table
 from gear_damping.measurement.formats.stated_rate import rate_beside
@@ -71,8 +72,13 @@ def read(path: Path, max_bytes: int) -> Table:
     texts = {name: "text" if isinstance(value, np.str_) else value for name, value in found.items()}
     left_out += [f"{name} ({what})" for name, what in texts.items() if name not in arrays]
     table = ArrayTable(path, held, left_out)
+    table.notes += said_beside(path.name, {name: one.item() for name, one in arrays.items() if _is_number(one)})
     table.stated_rate = rate_beside({name: one for name, one in arrays.items() if not _is_over_something(name, found)})
     return table
+
+
+def _is_number(array: NDArray) -> bool:
+    return array.size == 1 and is_real(array.dtype)
 
 
 def _apart(found: Mapping[str, NDArray | str]) -> tuple[list[str], dict[str, str]]:

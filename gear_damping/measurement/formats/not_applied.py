@@ -1,11 +1,20 @@
 """Factors and zeros that a file states beside values, which nothing says to be applied to them or not."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 _FACTORS = ("scale", "scale_factor", "factor", "gain", "sensitivity", "calibration", "calibration_factor", "slope")
+_OF_A_SENSOR = ("scale", "scale_factor", "sensitivity", "calibration", "calibration_factor")  # and of nothing else
+_ABOVE = re.compile(  # of lines above a table: `Sensitivity: 100 mV/g`, `# Sensor 2 scale factor = 0.1`
+    r"^[#%/;*! ]*(?:\w+[ _.\-]+){0,3}?(?:sensitivit\w*|empfindlichkeit|sensibilit\w*|scal(?:e|ing)[ _]?factor|"
+    r"calibration[ _]?(?:factor|constant)|(?:kalibrier|skalierungs)faktor)\b"
+    r"[^\d.+\-]*(?P<number>[-+.\d][-+.,\de]*)(?P<behind>.*)$",
+    re.I,
+)
+_LONGEST_LINE = 60  # characters of a line that are told
 _ZEROS = ("add_offset", "offset", "intercept")  # that values may have to be moved by
 
 
@@ -23,3 +32,30 @@ def said_of(file: str, left: Mapping[str, Mapping[str, float]]) -> tuple[str, ..
         for name, scales in left.items()
         for attribute, value in scales.items()
     )
+
+
+def said_above(file: str, rows: Iterable[Sequence[str]]) -> tuple[str, ...]:
+    """What is noted of the first line above a table that states the sensitivity of a sensor or a factor but 1."""
+    lines = [" ".join(cell.strip().strip('"') for cell in row if cell.strip()).lstrip("#%/;*! ") for row in rows]
+    found = [one for line in lines if (one := _ABOVE.match(line))]
+    told = [one[0][:_LONGEST_LINE] for one in found if one["behind"].strip() or not _is_one(one["number"])]
+    return (f"{file}: {_left(told[0], 'above the table')}",) if told else ()
+
+
+def said_beside(file: str, single: Mapping[str, Any]) -> tuple[str, ...]:
+    """What is noted of single numbers beside arrays that are named like the factor of a sensor."""
+    found = not_applied({name: value for name, value in single.items() if name.lower() in _OF_A_SENSOR})
+    return tuple(f"{file}: {_left(f'{name} = {value:g}', 'beside the arrays')}" for name, value in found.items())
+
+
+def _left(said: str, where: str) -> str:
+    return (
+        f"'{said}' {where} is not applied; where values are without it, declare gain: what the file holds for one unit"
+    )
+
+
+def _is_one(number: str) -> bool:
+    try:
+        return float(number.replace(",", ".")) == 1
+    except ValueError:
+        return False
