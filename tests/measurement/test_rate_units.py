@@ -32,7 +32,8 @@ def table_of(folder, head, sign=",", decimal=".", numbered=False):
         "Sample rate: 2000 samples per second", "Sample rate: 0.5 ms", "Sample rate: 2000±1 Hz",
         "Sample rate (per channel): 2 kHz", "Sample rate: 2000 per channel", "tInc = 5.0e-04", "#CLOCK:500us",
         "#CLOCK=500uS", "2000 SPS", "Rate: 2 kHz", "Sample rate: 2.000,0 Hz", "Sample rate: 2,000.0 Hz",
-        "time step h: 0.0005",
+        "time step h: 0.0005", "Sampling time: 0.5 ms", "Sample time [us]: 500", "Abtastzeit: 0,5 ms",
+        "Tastzeit = 500 us", "Période d'échantillonnage: 0.5 ms", "Tempo di campionamento: 0.5 ms",
         "Sample rate: 2000; mode=fast", "dt = 0.0005 mode: fast",
     ],
 )  # fmt: skip
@@ -57,7 +58,18 @@ def test_a_rate_whose_unit_is_not_read_is_none(said):
     assert unread_rate([[said]]) == said
 
 
-@pytest.mark.parametrize("said", ["Rate: 5 mm/s", "clock: 12 s", "Clock: 16 MHz", "version 1.2.3"])
+@pytest.mark.parametrize(
+    "said",
+    [
+        "Rate: 5 mm/s",
+        "clock: 12 s",
+        "Sampling time: 10 s",
+        "Sampling time: 500 ms",
+        "Sample time: 12:30",
+        "Clock: 16 MHz",
+        "version 1.2.3",
+    ],
+)
 def test_what_is_no_rate_of_samples_is_not_told_as_one(said):
     assert stated_rate([[said]]) is None
     assert unread_rate([[said]]) == ""

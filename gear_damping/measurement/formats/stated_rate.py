@@ -14,7 +14,9 @@ from gear_damping.measurement.formats.rate_units import Size, number_said, sampl
 _END = r"(?:\b|(?=_(?:ns|us|ms|s|hz|khz|mhz)\b))"  # of a name, before its unit too: `dt_us`
 _STEP = re.compile(
     r"\b(delta[ _]?[tx]|d[tx]|t ?interval|[tx][ _]?inc(r(ement)?)?|x-axis delta|"
-    r"(samp(le|ling)|time|horizontal|record|abtast)[ _-]?(interval\w*|period\w*|increment\w*|step\w*))" + _END, re.I,
+    r"(samp(le|ling)|time|horizontal|record|abtast)[ _-]?(interval\w*|period\w*|increment\w*|step\w*)|"
+    r"(abt|t)astzeit|p[eé]riode d.?[eé]chantillonnage|per[ií]odo de muestreo|(periodo|tempo) di campionamento)" + _END,
+    re.I,
 )  # fmt: skip
 _RATE = re.compile(
     r"\b(samp(le|ling)[ _-]?(rate|freq(uency)?)|samples (per|a) second|samples/s(ec)?|sps|fs|srate|odr|"
@@ -29,6 +31,8 @@ _STEP_ALONE = re.compile(
 )  # of MATLAB, and of its files made by Simcenter
 _BARE = re.compile(r"^\s*rate(?=\W*$|\s*[(\[]|\s+in\s)", re.I)  # of the lines above a table: any rate
 _CLOCK = re.compile(r"^\s*clock\b", re.I)  # Hantek: `#CLOCK:500us`
+_SAMPLED = re.compile(r"\bsampl(e|ing)[ _-]?time" + _END, re.I)  # the step, or how long was sampled:
+_LONGEST_STEP = 0.1  # s, assumed: records are longer
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.I)
 _WITH_SIGNS = re.compile(  # of decimals, or between thousands; behind a letter a comma parts cells
     r"[-+]?(\d+([.,]\d+)*[.,]?|(?<![^\W\d])[.,]\d+)(e[-+]?\d+)?", re.I
@@ -107,6 +111,8 @@ def _of_row(row: Sequence[str], beside_arrays: bool, decimal: str) -> tuple[str,
     size = size_said(name, ends + name[words.end() :], behind, is_step)
     if words.re is _CLOCK and not (size and size.kind == "s" and size.factor < 1):
         return None  # a time of day, or the clock of a processor
+    if words.re is _SAMPLED and not (size and size.kind == "s" and _is_step(number[0], size)):
+        return None
     if words.re is _BARE and size is None:
         return None  # a rate of something else
     if words.re is _BARE and not behind.strip() and not name[words.end() :].strip(" \t:="):
@@ -114,11 +120,15 @@ def _of_row(row: Sequence[str], beside_arrays: bool, decimal: str) -> tuple[str,
     return _measured(words[0].strip(), number[0], size, decimal, line)
 
 
+def _is_step(number: str, size: Size) -> bool:
+    return 0 < size.factor * (number_said(number) or 0) <= _LONGEST_STEP
+
+
 def _words(name: str, beside_arrays: bool) -> tuple[re.Match[str] | None, bool]:
     """The words of a name that state a rate, or the time from one sample to the next, and whether it is the latter."""
-    steps, rates = (_STEP, _CLOCK, _STEP_ALONE), (_RATE, _ALONE)
+    steps, rates = (_STEP, _CLOCK, _SAMPLED, _STEP_ALONE), (_RATE, _ALONE)
     if not beside_arrays:
-        steps, rates = steps[:2], (_RATE, _BARE)
+        steps, rates = steps[:3], (_RATE, _BARE)
     step = next((found for one in steps if (found := one.search(name))), None)
     return step or next((found for one in rates if (found := one.search(name))), None), step is not None
 
