@@ -8,7 +8,13 @@ from gear_damping.measurement.formats.blocks import listed, overlapping
 from gear_damping.measurement.formats.moments import DAY
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.record import Finding
-from gear_damping.measurement.time_column import COUNTER, is_time, numbers_left_out, stamped_rate
+from gear_damping.measurement.time_column import (
+    COUNTER,
+    is_time,
+    numbers_left_out,
+    stamped_rate,
+    unit_by_name,
+)
 from gear_damping.measurement.timebase import RATE_TOLERANCE
 
 _AS_STATED = (
@@ -80,10 +86,11 @@ class FileClocks:
         columns = {self.table.index(column, "") for column in used if column is not None}
         found = []
         for index in sorted({*range(len(self.table.names))} - columns):
-            if not is_time(self.table.unit(index)):
+            unit = self._unit_of_stamps(index)
+            if unit is None:
                 continue
             with suppress(InputError):  # a column that cannot be read has no rate
-                own = stamped_rate(self.table.unit(index), self.table.values(index)[first:stop])
+                own = stamped_rate(unit, self.table.values(index)[first:stop])
                 if own and abs(rate / own - 1) <= RATE_TOLERANCE:
                     return ()
                 found += [(index, own)] if own else []
@@ -94,6 +101,13 @@ class FileClocks:
         if abs(rate / stated - 1) <= RATE_TOLERANCE:
             return ()
         return (_rate_conflict(rate, f"'{name}' beside the table says", stated),)
+
+    def _unit_of_stamps(self, index: int) -> str | None:
+        """The unit of a column of stamps, as its header or its name says; None of any other column."""
+        unit = self.table.unit(index)
+        if unit is not None:
+            return unit if is_time(unit) else None
+        return unit_by_name(self.table.names[index], self.table.names)
 
     def beside_stamps(self, rate: float, first: int, stop: int) -> tuple[Finding, ...]:
         """A note where the file states another rate than that of its stamps in the declared unit, in Hz."""

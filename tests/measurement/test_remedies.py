@@ -2,6 +2,7 @@
 
 import re
 
+import numpy as np
 import pytest
 
 from gear_damping.errors import InputError, nearest
@@ -106,7 +107,16 @@ def test_a_rate_that_the_stamps_of_the_file_contradict_is_said(bench):
     assert found.severity == "note"
 
 
-_SILENT = [(20.0, "time [s]"), (20.1, "time [s]"), (10.0, "t"), (10.0, "x [m]")]  # kHz and header
+@pytest.mark.parametrize(("header", "factor"), [("millis", 1e3), ("t_us", 1e6), ("time_s", 1.0)])
+def test_so_is_one_that_a_clock_named_by_its_unit_contradicts(bench, header, factor):
+    """A logger that lost samples, whose rows are taken as even."""
+    kept = np.arange(bench.columns["t"].size) % 25 != 7
+    bench.columns = {name: values[kept] for name, values in bench.columns.items()}
+    bench.columns["t"] = bench.columns["t"] * factor
+    assert "rate_conflict" in _at_a_rate(bench, 20.0, header)
+
+
+_SILENT = [(20.0, "time [s]"), (20.0, "time_s"), (20.1, "time [s]"), (10.0, "t"), (10.0, "x [m]")]  # kHz and header
 
 
 @pytest.mark.parametrize(("kilohertz", "header"), _SILENT)
