@@ -5,7 +5,7 @@ import re
 from gear_damping.errors import InputError
 from gear_damping.measurement.angular_error import is_angular_acceleration
 from gear_damping.measurement.declared_units import Conversion
-from gear_damping.measurement.formats.bracket_words import is_level, spelt_out, unit_of_its_kind
+from gear_damping.measurement.formats.bracket_words import is_count, is_level, spelt_out, unit_of_its_kind
 from gear_damping.measurement.formats.header import is_among_words
 from gear_damping.measurement.named_units import gravity_at_end, unit_at_end
 from gear_damping.measurement.raw import SAME_UNIT, RawChannel, RawRecord
@@ -170,12 +170,23 @@ def _among_words(raw: RawChannel, said: str, stated: Unit) -> Finding | None:
     """A word in the brackets of the header is a unit of the kind of the YAML's and another one, `left, mm`."""
     if is_level(raw.header_unit):
         return _level_conflict(raw, said)
+    if is_count(raw.header_unit) and not is_of_kind(said, "1"):
+        return _counts_conflict(raw, said)
     word = spelt_out(raw.header_unit, said) or unit_of_its_kind(raw.header_unit, said)
     if word is None or parse_unit(word).factor == stated.factor:
         return None
     message = (
         f"the header of column '{raw.plan.column}' says '{raw.header_unit}', where {word} may be the unit, and the "
         f"YAML '{said}', which was used; correct the one that is wrong, or write gain: 1 where it is none"
+    )
+    return Finding("unit_conflict", message, channel=raw.plan.name)
+
+
+def _counts_conflict(raw: RawChannel, said: str) -> Finding:
+    """The header says that the column counts, `LSB`, and the YAML a unit without how many counts are one."""
+    message = (
+        f"the header of column '{raw.plan.column}' says '{raw.header_unit}', and the YAML '{said}', which was used; "
+        f"write gain: the counts of one {said}, or gain: 1 where the column is in {said}"
     )
     return Finding("unit_conflict", message, channel=raw.plan.name)
 

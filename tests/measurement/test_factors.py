@@ -92,6 +92,15 @@ def test_a_level_contradicts_the_unit_of_a_signal(tmp_path):
     assert not conflicts(tmp_path, "t;x [dBV]", "V", more=", gain: 1")
 
 
+@pytest.mark.parametrize("word", ["LSB", "counts", "ADC counts", "px"])
+def test_counts_in_a_header_contradict_a_unit_without_their_number(tmp_path, word):
+    (message,) = conflicts(tmp_path, f"t;x ({word})", "mm")
+    assert f"says '{word}', and the YAML 'mm', which was used; write gain: the counts of one mm" in message
+    assert not conflicts(tmp_path, f"t;x ({word})", "mm", more=", gain: 1638.4")
+    assert not conflicts(tmp_path, f"t;x ({word})", "'1'")
+    assert not conflicts(tmp_path, "t;x (raw)", "mm")
+
+
 @pytest.mark.parametrize("above", ["X Units: s\nY Units: um\n", "Horizontal Units;s\nVertical Units;um\n"])
 def test_units_of_axes_above_a_table_are_those_of_its_two_columns(above, tmp_path):
     (message,) = conflicts(tmp_path, "t;x", "mm", above=above)

@@ -23,6 +23,7 @@ _OWN = {  # of a length, or of an angle
     "mG": ("mg",), **dict.fromkeys(('"', "''", "″"), ("in", "arcsec")), **dict.fromkeys(("'", "′"), ("ft", "arcmin")),
 }  # fmt: skip
 _LEVEL = re.compile(r"dB[A-Za-zµμ]+$")  # over a volt, a milliwatt
+_COUNTS = re.compile(r"(adc[ _-]?)?(counts?|cts?|lsbs?|digits?|pixels?|px|pulses?|ticks?|increments?)", re.I)
 _BETWEEN = re.compile(r"[\s,;:|]+")
 # Units of more than one letter that are words too: of place, of number, of the one that is meant.
 _WORDS = {
@@ -78,6 +79,11 @@ def spelt_out(text: str, plain: str) -> str | None:
 def is_level(text: str) -> bool:
     """Whether a text is the unit of a level, `dBV`, which is a logarithm."""
     return bool(_LEVEL.match(text.strip()))
+
+
+def is_count(text: str) -> bool:
+    """Whether a text says that a column counts something, `LSB` of a converter or `px` of a video."""
+    return bool(_COUNTS.fullmatch(text.strip()))
 
 
 def is_known(word: str) -> bool:
