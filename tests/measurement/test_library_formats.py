@@ -59,6 +59,23 @@ def test_empty_columns_of_xlsx_that_numbers_leave_out_are_said(tmp_path, blank, 
     )
 
 
+def test_rows_above_a_table_of_xlsx_state_what_lines_of_a_text_do(tmp_path):
+    """A rate, units and a sensitivity; an empty row above the names is none among the values."""
+    head = [["Sampling rate [Hz]", 200], ["x", "mm"], ["Sensitivity", "100 mV/g"], [], ["x", "a"]]
+    table = read_table(_workbook(tmp_path / "a.xlsx", S=[*head, *([k / 7, k % 5] for k in range(60))]))
+    assert table.names == ("x", "a")
+    assert table.stated_rate == ("Sampling rate", pytest.approx(200.0))
+    assert [table.unit(k) for k in range(2)] == ["mm", None]
+    (note,) = table.notes
+    assert note.startswith("a.xlsx, S: 'Sensitivity 100 mV/g' above the table is not applied")
+
+
+def test_sheets_of_other_rates_state_none(tmp_path):
+    rows = [["x", "a"], *([k / 7, k % 5] for k in range(60))]
+    book = {"A": [["Sampling rate [Hz]", 200], *rows], "B": [["Sampling rate [Hz]", 100], *rows]}
+    assert read_table(_workbook(tmp_path / "a.xlsx", **book)).stated_rate is None
+
+
 def test_formulas_of_xlsx_without_stored_values_are_said(tmp_path):
     rows = [["t", "x"], *([k, f"=A{k + 2}*2"] for k in range(9))]
     table = read_table(_workbook(tmp_path / "a.xlsx", S=rows))

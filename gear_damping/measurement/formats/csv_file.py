@@ -29,7 +29,7 @@ from gear_damping.measurement.formats.cells import (
 from gear_damping.measurement.formats.console_text import refuse_what_is_shown
 from gear_damping.measurement.formats.frame_tables import refuse_several_tables
 from gear_damping.measurement.formats.header import Header
-from gear_damping.measurement.formats.not_applied import said_above
+from gear_damping.measurement.formats.not_applied import left_above
 from gear_damping.measurement.formats.number_texts import is_number, is_written, parts_thousands
 from gear_damping.measurement.formats.octave_text import octave_table
 from gear_damping.measurement.formats.stated_rate import stated_rate, unread_rate
@@ -94,7 +94,7 @@ def read(path: Path, max_bytes: int) -> Table:
     table.unread_rate = "" if table.stated_rate else unread_rate(above, decimal)
     if header.skipped:
         table.notes += (f"{path.name}: {header.skipped} line(s) before the header are left out",)
-    table.notes += said_above(path.name, above)
+    table.notes += tuple(f"{path.name}: {one}" for one in left_above(above))
     if header.says:
         table.notes += (f"{path.name}: {header.says}",)
     if blocks:

@@ -34,12 +34,12 @@ def said_of(file: str, left: Mapping[str, Mapping[str, float]]) -> tuple[str, ..
     )
 
 
-def said_above(file: str, rows: Iterable[Sequence[str]]) -> tuple[str, ...]:
+def left_above(rows: Iterable[Sequence[str]]) -> tuple[str, ...]:
     """What is noted of the first line above a table that states the sensitivity of a sensor or a factor but 1."""
     lines = [" ".join(cell.strip().strip('"') for cell in row if cell.strip()).lstrip("#%/;*! ") for row in rows]
     found = [one for line in lines if (one := _ABOVE.match(line))]
     told = [one[0][:_LONGEST_LINE] for one in found if one["behind"].strip() or not _is_one(one["number"])]
-    return (f"{file}: {_left(told[0], 'above the table')}",) if told else ()
+    return (_left(told[0], "above the table"),) if told else ()
 
 
 def said_beside(file: str, single: Mapping[str, Any]) -> tuple[str, ...]:

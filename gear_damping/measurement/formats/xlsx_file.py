@@ -1,6 +1,7 @@
 """Excel workbooks: the columns of one sheet by their header, of several as `sheet/header`."""
 
 import re
+from dataclasses import dataclass, field
 from datetime import datetime, time, timedelta
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,10 @@ from gear_damping.measurement.formats.cells import (
 )
 from gear_damping.measurement.formats.header import find_header
 from gear_damping.measurement.formats.moments import Moments, moment_since, past_midnight
+from gear_damping.measurement.formats.not_applied import left_above
+from gear_damping.measurement.formats.stated_rate import stated_rate, unread_rate
 from gear_damping.measurement.formats.table import Table, extra_library, refuse_size, unreadable
+from gear_damping.measurement.formats.units_above import units_of_names
 from gear_damping.units import is_of_kind
 
 SUFFIXES = (".xlsx",)
@@ -49,22 +53,26 @@ def read(path: Path, max_bytes: int) -> Table:
         sheets = {sheet.title: _cells(sheet) for sheet in book.worksheets}
         book.close()
     several = sum(bool(rows) for rows, _ in sheets.values()) > 1
-    columns, notes, empty_columns = [], [], []
+    columns, notes, empty_columns, above = [], [], [], []
     for title, (rows, units) in sheets.items():
-        found, said, without = _columns(rows, units, f"{title}/" if several else "")
-        empty_columns += without
-        own, below = without_footer(found)
+        found = _columns(rows, units, f"{title}/" if several else "")
+        empty_columns += found.empty
+        above += [found.above] if found.columns else []
+        own, below = without_footer(found.columns)
         if not below:
-            own, below = without_lone_rows(found, lone_rows(_filled(rows)))
+            own, below = without_lone_rows(found.columns, lone_rows(_filled(rows)))
         columns += own
-        empty = "" if below else _empty_rows(rows)
+        empty = "" if below else _empty_rows(rows, found.first)
         notes += [f"{path.name}, {title}: {empty}"] if empty else []
-        notes += [f"{path.name}, {title}: {one}" for one in said]
+        notes += [f"{path.name}, {title}: {one}" for one in found.notes]
         notes += [f"{path.name}, {title}: {below}"] if below else []
     if not columns:
         raise InputError(Problem("file", "no rows", str(path), "export it again"))
     table = CellTable(path, columns, decimal_commas=True)
     table.notes += tuple(notes)
+    rates = {stated_rate(one) for one in above}
+    table.stated_rate = rates.pop() if len(rates) == 1 else None
+    table.unread_rate = "" if table.stated_rate else next(filter(None, map(unread_rate, above)), "")
     table.left_out = tuple(f"{name} ({NO_VALUES})" for name in empty_columns)
     return table
 
@@ -97,8 +105,27 @@ def _unit_written(number_format: str) -> str:
     return written[1].strip() if written and is_of_kind(written[1].strip(), written[1].strip()) else ""
 
 
-def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> tuple[list[Cells], list[str], list[str]]:
-    """The columns of a sheet with rows below its header, what is noted of them, and names without a value below.
+@dataclass(frozen=True)
+class _Sheet:
+    """What a sheet holds.
+
+    Args:
+        columns: Those with rows below its header.
+        notes: What is noted of them.
+        empty: Names without a value below.
+        above: The cells of the rows above the values, as texts.
+        first: The line of the first values.
+    """
+
+    columns: list[Cells] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    empty: list[str] = field(default_factory=list)
+    above: list[list[str]] = field(default_factory=list)
+    first: int = 1
+
+
+def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> _Sheet:
+    """The columns of a sheet.
 
     Empty cells at the end of a column are not its own.
     """
@@ -109,15 +136,16 @@ def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> tuple
     )
     texts = [["" if cell is None else str(cell).strip() for cell in row] for _, row in filled[:_HEAD]]
     if not texts:
-        return [], [], []
+        return _Sheet()
     header = find_header(texts, max(sum(cell is not None for cell in row) for _, row in filled))
-    body = filled[header.first :]
-    columns, notes, empty = [], [], []
-    for k in range(max(len(row) for _, row in filled)):
+    body, above, width = filled[header.first :], texts[: header.first], max(len(row) for _, row in filled)
+    columns, notes, empty = [], list(left_above(above)), []
+    said = units_of_names(above, [header.name(k) for k in range(width)])
+    for k in range(width):
         cells = [(number, row[k] if k < len(row) else None) for number, row in body]
         while cells and cells[-1][1] is None:
             cells.pop()
-        name, unit = header.name(k), header.unit(k) or units.get(kept[k])
+        name, unit = header.name(k), header.unit(k) or units.get(kept[k]) or said.get(k)
         empty += [f"{prefix}{name}"] if name and not cells else []
         if cells:
             lines = [number for number, _ in cells]
@@ -132,7 +160,7 @@ def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> tuple
             columns.append(Cells(name, unit, values, lines.__getitem__, header.also(k), begins))
     blank = [get_column_letter(place + 1) for place in range(kept[-1]) if place not in kept]
     notes += [f"columns {', '.join(blank)} are empty, and numbers of columns do not count them"] if blank else []
-    return columns, notes, empty
+    return _Sheet(columns, notes, empty, above, body[0][0] if body else 1)
 
 
 def _with_points(cells: list[Any]) -> list[Any]:
@@ -170,9 +198,10 @@ def _filled(rows: list[list[Any]]) -> list[int]:
     return [k for k, row in enumerate(rows) if k >= first and any(cell is not None for cell in row)]
 
 
-def _empty_rows(rows: list[list[Any]]) -> str:
-    """What is noted of empty rows between rows of numbers."""
+def _empty_rows(rows: list[list[Any]], first: int) -> str:
+    """What is noted of empty rows between rows of numbers, from a line on."""
     values = [k for k, row in enumerate(rows, start=1) if any(isinstance(cell, int | float) for cell in row)]
+    values = [k for k in values if k >= first]
     empty = [k for k, row in enumerate(rows, start=1) if all(cell is None for cell in row)]
     return said_of_empty_rows([k for k in empty if values and values[0] < k < values[-1]], len(values))
 
