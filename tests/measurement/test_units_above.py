@@ -22,6 +22,7 @@ def units_of(folder, head, rows=ROWS):
         "s,mm,g\nTime,Disp,Acc\n", "Units: s,mm,g\nTime,Disp,Acc\n", "# Units: s mm g\nTime,Disp,Acc\n",
         "# s, mm, g\nTime,Disp,Acc\n", "Einheiten: s,mm,g\nTime,Disp,Acc\n", "[s],[mm],[g]\nTime,Disp,Acc\n",
         "Time: s\nDisp: mm\nAcc: g\nTime,Disp,Acc\n", "# time [s]\n# disp [mm]\n# acc [g]\nTime,Disp,Acc\n",
+        "Time in s\nTime: in s\nDisp: left sensor (mm)\nAcc: case in g\nTime,Disp,Acc\n",
         "Channel,Unit,Range\nTime,s,\nDisp,mm,10\nAcc,g,5\n\nTime,Disp,Acc\n",
     ],
 )  # fmt: skip
@@ -39,6 +40,7 @@ def test_a_row_of_units_before_the_names_may_be_labelled(tmp_path):
     [
         "Mode: A\nDisp: A\nTime,Disp,Acc\n", "Operator: mm\nTime,Disp,Acc\n", "Acc: raw\nTime,Disp,Acc\n",
         "Time: 12:30\nDisp: sensor 3, mm\nTime,Disp,Acc\n", "s,mm\nTime,Disp,Acc\n", "left,mm,g\nTime,Disp,Acc\n",
+        "V,V,V\nTime,Disp,Acc\n", "Disp: 12 (A)\nTime,Disp,Acc\n",
     ],
 )  # fmt: skip
 def test_lines_that_say_something_else_give_none(tmp_path, head):

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from gear_damping.measurement.formats.bracket_words import is_known
 from gear_damping.measurement.formats.header import bracket_unit, is_units, without_label
 from gear_damping.measurement.formats.unit_words import as_ours
+from gear_damping.measurement.time_column import NAMED, is_time
 from gear_damping.units import is_of_kind
 
 _AXIS = re.compile(
@@ -57,7 +58,7 @@ def units_of_names(above: Iterable[Sequence[str]], names: Sequence[str]) -> dict
         cells = [cell.strip(" \t\"'") for cell in cells]
         if sum(cell in names for cell in cells if cell) > 1:
             continue  # the names themselves
-        found |= _row_of_units(cells, len(names)) or _unit_of_one(cells, names)
+        found |= _row_of_units(cells, names) or _unit_of_one(cells, names)
     return found
 
 
@@ -75,13 +76,17 @@ def listed_names(above: Iterable[Sequence[str]], width: int, sign: str) -> tuple
     return tuple(one["name"] for one in found) if is_whole else ()
 
 
-def _row_of_units(cells: Sequence[str], width: int) -> dict[int, str]:
+def _row_of_units(cells: Sequence[str], names: Sequence[str]) -> dict[int, str]:
     """The units of all columns, where a line is made of them: `s,mm,g`, `Units: s mm g`; {} of any other line."""
     units = without_label(cells)
-    units = units if len(units) > 1 else units[0].split()
-    if not len(units) == width > 1 or not is_units(units):
+    units = [as_ours(one.strip("[]() ")) for one in (units if len(units) > 1 else units[0].split())]
+    if not len(units) == len(names) > 1 or not is_units(units):
         return {}
-    return {k: unit for k, one in enumerate(units) if is_known(unit := as_ours(one.strip("[]() ")))}
+    if any(
+        NAMED.search(name) and is_known(unit) and not is_time(unit) for name, unit in zip(names, units, strict=True)
+    ):
+        return {}  # of ranges, `V,V,V`
+    return {k: unit for k, unit in enumerate(units) if is_known(unit)}
 
 
 def _unit_of_one(cells: Sequence[str], names: Sequence[str]) -> dict[int, str]:
@@ -90,6 +95,7 @@ def _unit_of_one(cells: Sequence[str], names: Sequence[str]) -> dict[int, str]:
     name, *behind = [cell for cell in told if cell] or [""]
     places = [k for k, one in enumerate(names) if one and one.lower() == name.lower().rstrip(" :=")]
     unit = as_ours(behind[0].strip("[]() ")) if behind else ""
+    unit = unit if _is_said(unit) or not behind else as_ours(bracket_unit(behind[0]) or "")
     return {places[0]: unit} if len(places) == 1 and _is_said(unit) else {}
 
 
