@@ -53,7 +53,6 @@ REFUSED = {
     ("oscillator", "records", "channels", "acceleration", "coupling"): "has lost its mean",
     ("gear_pair", "records", "encoders", "pinion", "index"): "turns of|holds no pulse",
     ("gear_pair", "records", "encoders", "gear", "index"): "turns of|holds no pulse",
-    ("gear_pair", "records", "encoders", "tacho", "threshold", "unit"): "do not cover the record",
     ("oscillator", "parameters", "stiffness", "unit"): "show nothing beyond",
     **{
         ("gear_pair", "parameters", name, "unit"): "lies outside|must be a whole number|finite"
@@ -110,7 +109,7 @@ def table(rows: int) -> dict[str, np.ndarray]:
         "w2": speed / 2 + 0.2 * np.sin(mesh) + 0.05 * noise[4], "a": 900 * np.cos(mesh) + 20 * noise[5],
         "p": 4096 * turns, "g": 4096 * back / (2 * np.pi), "z": (np.mod(turns - 0.2, 1) < 0.03) * 1.0,
         "z2": (np.mod(back / (2 * np.pi) - 0.3, 1) < 0.03) * 1.0, "y": y, "v": v, "acc": acceleration,
-        "wave": 4.0 * (np.mod(16 * turns, 1) < 0.4) + 0.5 * np.sin(900 * t),
+        "wave": 1.9 + 2.0 * np.tanh(3 * np.sin(32 * np.pi * turns)),
         "let_go": 1e-3 * np.exp(-0.03 * FREQUENCY * t) * np.cos(FREQUENCY * t) + 1e-5 * noise[6],
         "F": np.real(force.sum(0)) + 0.2, "base": -np.real(force.sum(0)) / size,
     }  # fmt: skip

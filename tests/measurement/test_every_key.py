@@ -56,7 +56,7 @@ def _table() -> dict[str, np.ndarray]:
     turns = 40.0 * time + 0.01 * np.sin(60 * time)
     columns |= {
         "t": time, "p": 64 * turns, "g": 48 * turns / 2, "z": (np.mod(turns, 1) < 0.03) * 1.0,
-        "wave": 4.0 * (np.mod(4 * turns, 1) < 0.5) + 0.5 * np.sin(900 * time), "ts": time * 1.001 - 1e-4,
+        "wave": 1.9 + 2.0 * np.tanh(3 * np.sin(8 * np.pi * turns)), "ts": time * 1.001 - 1e-4,
         "pulses": np.interp(np.linspace(0, turns[-1], N), turns, time),
     }  # fmt: skip
     return columns | {"tide": columns["wave"][::-1], "marks": columns["pulses"] + 1e-4 * np.sin(99 * columns["pulses"])}
