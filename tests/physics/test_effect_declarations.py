@@ -20,7 +20,7 @@ torque_ripple torque_variation bearing_flexibility shaft_torsion load_dependent_
 windage_drag shaft_angle_error load_noise sensor_noise sensor_gain sensor_offset sensor_drift sensor_delay
 sensor_lowpass sensor_saturation sensor_quantisation fourier_mesh_stiffness rectangular_mesh_stiffness
 quadratic_stiffness offset_force sine_restoring mesh_stiffness_shape second_mode tip_relief damping_by_record
-stiffness_by_record dead_zone accelerometer_gravity noncollocated_mode
+stiffness_by_record dead_zone accelerometer_gravity noncollocated_mode mains_hum
 """
 
 

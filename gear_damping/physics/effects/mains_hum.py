@@ -1,0 +1,58 @@
+"""The hum of the mains in a sensor."""
+
+from math import pi
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.cause import Cause, Recipe, Rig
+from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.terms import Recording, Sensor, Values
+
+MAINS = (50.0, 60.0)  # Hz, of public grids
+STRAYS = 0.5  # Hz, by which one strays before consumers are cut off
+BEGUN = 0.1  # of the deflection, or of the amplitude of an oscillator, which a linear step finds the size from
+
+
+def _of_either_grid(rig: Rig) -> tuple[Recipe, ...]:
+    """One variant for each frequency that grids have."""
+    size = BEGUN * (rig.values.get("amplitude") or rig.values["mean_load"] / rig.values["mean_stiffness"])
+    return tuple(
+        Recipe(
+            {"amplitude": abs(size)},
+            {"amplitude": "phase"},
+            scanned={"frequency": mains},
+            within={"mains_hum.frequency": (mains - STRAYS, mains + STRAYS)},
+            in_si=True,
+        )
+        for mains in MAINS
+    )
+
+
+class MainsHum(Sensor):
+    """What a cable picks up of the grid: a sine that knows nothing of the motion, of another phase in every record."""
+
+    name = "mains_hum"
+    equation = "y + A sin(2 pi f t + phi)"
+    reference = "Morrison (2016), Grounding and Shielding, ch. 4"
+    parameters: ClassVar = (
+        Parameter("amplitude", "m", 1e-6, "A", 0, 1e9),
+        Parameter("frequency", "Hz", 50.0, "f", 0, 1e6),
+        Parameter("phase", "rad", 0.0, "phi, at the beginning of a record"),
+    )
+    position = 35  # in the chain, on the cable behind the sensor and before the filter
+    cause: ClassVar = Cause(
+        "the hum of the mains in the sensor",
+        _of_either_grid,
+        separated_by="ring_down",
+        turns_with="clock",
+    )
+
+    def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
+        """The record with the hum in it."""
+        time = torch.arange(signal.shape[-1], dtype=signal.dtype, device=signal.device) / recording.sampling_rate
+        if recording.begins is not None:  # of a segment: the hum went on since the record began
+            time = time + recording.begins.unsqueeze(1)
+        wave = torch.sin(2 * pi * values["frequency"].unsqueeze(1) * time + values["phase"].unsqueeze(1))
+        return signal + values["amplitude"].unsqueeze(1) * wave
