@@ -84,12 +84,10 @@ def _steady_load(state: State, told: Told, gains: Mapping[str, str]) -> list[str
 
 
 def _is_one_way(outcome: Outcome) -> bool:
-    """Whether every record goes back by no more than a part of the way that it goes."""
-    for motion in outcome.problem.motion(outcome.fitted.shared, outcome.fitted.states):
-        forward, backward = motion[1].clamp(min=0).sum(), (-motion[1]).clamp(min=0).sum()
-        if float(min(forward, backward)) > BACK * float(max(forward, backward)):
-            return False
-    return True
+    """Whether all records together go back by no more than a part of the way that they go; each may be in segments."""
+    rates = [motion[1] for motion in outcome.problem.motion(outcome.fitted.shared, outcome.fitted.states)]
+    forward, backward = (sum(float((sign * rate).clamp(min=0).sum()) for rate in rates) for sign in (1, -1))
+    return min(forward, backward) <= BACK * max(forward, backward)
 
 
 def _prepared(outcome: Outcome) -> Prepared:
