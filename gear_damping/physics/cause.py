@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import inf
 from typing import Any, Literal
 
 from gear_damping.physics.systems.traits import Trait
@@ -50,6 +51,8 @@ class Rig:
         standing: Whether its shafts stand in all records.
         on_shafts: Whether a speed or an acceleration of one shaft was measured.
         accelerometers: Shafts that carry one, across the radius.
+        band: Half the lowest sampling rate of the records, in Hz: what is faster is seen as something else.
+        longest: Seconds of the longest record.
         records: How many were fitted.
         swells: Whether a free motion of them grows again after it fell: energy comes back from where it went.
         mode: A mass on a spring with which loads and motions agree best, where nothing holds the driven one.
@@ -78,6 +81,8 @@ class Rig:
     records: int = 1
     swells: bool = False
     accelerometers: tuple[str, ...] = ()
+    band: float = inf
+    longest: float = inf
 
     def has(self, trait: Trait) -> bool:
         """Whether its system has a trait."""

@@ -40,7 +40,7 @@ def coasts(folder, dry, drag, noise):
     ("dry", "drag", "noise"),
     [
         (0.16, 0.0014, 0.005),  # the dry friction is found first
-        (0.3, 0.004, 0.01),  # the drag alone runs to the bound of its exponent
+        pytest.param(0.3, 0.004, 0.01, marks=pytest.mark.slow),  # the drag alone runs to the bound of its exponent
     ],
 )
 def test_dry_friction_and_drag_are_told_apart(tmp_path, dry, drag, noise):

@@ -9,6 +9,8 @@ from scipy.signal import lsim
 
 from gear_damping.explanation.explain import explain
 from gear_damping.measurement.load import load_measurement
+from gear_damping.physics.cause import Rig
+from gear_damping.physics.effects.mains_hum import MainsHum
 
 ROLES = ("fit", "fit", "holdout")
 RATE, SECONDS, FINER = 400.0, 8.0, 8
@@ -35,6 +37,15 @@ def written(folder, hertz, size=0.1, channel="displacement"):
     path = folder / "measurement.yaml"
     path.write_text(yaml.safe_dump({"system": "oscillator", "records": records}))
     return path
+
+
+@pytest.mark.parametrize(
+    ("band", "longest", "shown"), [(500.0, 1.0, (50, 60)), (55.0, 1.0, (50,)), (5.0, 1.0, ()), (500.0, 0.07, (60,))]
+)
+def test_it_is_tried_where_records_show_it(band, longest, shown):
+    """At 10 Hz, 50 Hz stand still: there the hum was named for the friction of a wheel that coasts."""
+    recipes = MainsHum.cause.recipes_for(Rig("oscillator", values={"amplitude": 1.0}, band=band, longest=longest))
+    assert tuple(recipe.scanned["frequency"] for recipe in recipes) == shown
 
 
 def established(content):

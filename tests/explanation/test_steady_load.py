@@ -1,13 +1,16 @@
 """A drive that turns one way: its constant force is told, and that friction and a load are the same in it."""
 
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import torch
 import yaml
 from scipy.signal import cont2discrete, lfilter
 
 import gear_damping as gd
+from gear_damping.explanation.answer import acting
 
 RATE, GAIN, DAMPING, LOAD = 500.0, 7.0, 4.8, 9.0
 
@@ -18,7 +21,7 @@ def speed(torque, load):
     return lfilter(top[0], bottom, GAIN * torque - load)
 
 
-@pytest.fixture(params=["one way", "both ways"])
+@pytest.fixture(params=["one way", pytest.param("both ways", marks=pytest.mark.slow)])
 def said(request, tmp_path):
     """The sentences of a drive under a steady load, and whether it turns one way."""
     one_way, records = request.param == "one way", []
@@ -66,3 +69,15 @@ def test_a_force_that_nothing_shows_is_said(tmp_path):
     assert answer.verdict == "consistent"
     said = [one for one in answer.content["sentences"] if one.startswith("What moved does not show the measured force")]
     assert len(said) == 1
+
+
+@pytest.mark.parametrize(
+    ("rates", "is_one_way"),
+    [([[1.0, 2.0], [3.0, 1.0]], True), ([[1.0, 2.0], [-3.0, -1.0]], False), ([[-2.0, 0.01], [-1.0, -3.0]], True)],
+)
+def test_segments_go_one_way_together(rates, is_one_way):
+    """A motor on a triangle of speed turned one way in each of its segments: it was said to turn one way."""
+    motions = [torch.tensor([[0.0, 0.0], rate]) for rate in rates]
+    problem = SimpleNamespace(motion=lambda *_: motions)
+    outcome = SimpleNamespace(problem=problem, fitted=SimpleNamespace(shared=None, states=None))
+    assert acting._is_one_way(outcome) is is_one_way

@@ -1,6 +1,7 @@
 """Sensors in closed form, and what the drawn loads and noises promise."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -153,12 +154,23 @@ def test_an_accelerometer_feels_gravity_once_a_turn_of_its_shaft(shaft):
     np.testing.assert_allclose(found[0], 9.80665 * np.cos(turned + 0.4), atol=1e-12)
 
 
+def test_hum_goes_on_from_segment_to_segment():
+    begins = torch.tensor([0.0, 0.013, 0.4], dtype=torch.float64)
+    values = {"amplitude": 0.3, "frequency": 49.8, "phase": 0.4}
+    rows = {name: torch.full((BATCH,), value, dtype=torch.float64) for name, value in values.items()}
+    still = torch.zeros(BATCH, COUNT, dtype=torch.float64)
+    found = EFFECTS["mains_hum"]().measure(still, rows, replace(recording(), begins=begins))
+    wanted = 0.3 * np.sin(2 * math.pi * 49.8 * (TIME.numpy() + begins.numpy()[:, None]) + 0.4)
+    np.testing.assert_allclose(found.numpy(), wanted, atol=1e-12)
+
+
 def test_the_chain_runs_from_the_motion_to_the_file():
     order = [
         "encoder_error",
         "sensor_gain",
         "sensor_offset",
         "sensor_drift",
+        "mains_hum",
         "sensor_lowpass",
         "sensor_delay",
         "sensor_noise",

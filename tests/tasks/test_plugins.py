@@ -66,7 +66,7 @@ def test_the_run_remembers_the_file(recorded):
     assert str(EXAMPLE) in json.loads((recorded / "run.json").read_text())["inputs"]
 
 
-@pytest.mark.parametrize("ruled_out", [False, True])
+@pytest.mark.parametrize("ruled_out", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_it_is_found_as_the_cause_unless_it_is_ruled_out(tmp_path, ruled_out):
     size = ["simulator.n_runs=2", "write_measurement=true"]
     assert main(decay(tmp_path, "simulator.sensor_noise.snr_db=40", *size)) == 0

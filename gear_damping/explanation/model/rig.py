@@ -51,6 +51,8 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
     inputs = tuple(dict.fromkeys(name for record in evidence.fit for name in record.inputs))
     common = {"system": base.system.name, "traits": base.system.traits, "values": values}
     common |= {"spring": base.system.spring, "inputs": inputs, "records": len(evidence.fit)}
+    common["band"] = min(record.sampling_rate for record in evidence.fit) / 2
+    common["longest"] = evidence.duration
     if not base.system.has(Trait.SHAFTS):
         radian = radian_of(evidence)
         natural = values["natural_frequency"] / (2 * pi)

@@ -12,11 +12,12 @@ from gear_damping.physics.terms import Recording, Sensor, Values
 
 MAINS = (50.0, 60.0)  # Hz, of public grids
 STRAYS = 0.5  # Hz, by which one strays before consumers are cut off
+FEWEST_CYCLES = 4  # in a record: fewer are an arc, or a swing that dies away
 BEGUN = 0.1  # of the deflection, or of the amplitude of an oscillator, which a linear step finds the size from
 
 
 def _of_either_grid(rig: Rig) -> tuple[Recipe, ...]:
-    """One variant for each frequency that grids have."""
+    """One variant for each frequency that grids have, where the records show it."""
     size = BEGUN * (rig.values.get("amplitude") or rig.values["mean_load"] / rig.values["mean_stiffness"])
     return tuple(
         Recipe(
@@ -27,6 +28,7 @@ def _of_either_grid(rig: Rig) -> tuple[Recipe, ...]:
             in_si=True,
         )
         for mains in MAINS
+        if mains + STRAYS < rig.band and mains * rig.longest >= FEWEST_CYCLES
     )
 
 
