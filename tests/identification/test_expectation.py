@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import least_squares as scipy_least_squares
 
 from gear_damping.identification.output_error.least_squares import fit
-from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.problem import OutputErrorProblem, samples_alike
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.identification.output_error.uncertainty import noise_covariance
 from gear_damping.physics.catalogue import effect_class
@@ -64,19 +64,42 @@ def weighed_by(level, values):
     return rows.x[:2], residual(rows.x)
 
 
+def alike(residual):
+    """Samples that say what one says, by the lines of a spectrum that hold the power: 1 of white noise."""
+    power = np.abs(np.fft.rfft(residual)) ** 2
+    found = len(power) * np.sum(power**2) / (2 * np.sum(power) ** 2)
+    return found if found > 1 + 3 / len(power) ** 0.5 else 1.0
+
+
+@pytest.mark.parametrize(("lines", "samples"), [(1, 4001), (7, 4001), (50, 6000)])
+def test_samples_of_a_few_lines_count_as_few(lines, samples):
+    at = np.arange(samples)
+    places = 2 * np.pi * (3 + 11 * np.arange(lines)) / samples
+    series = torch.tensor(np.cos(np.outer(at, places) + np.arange(lines)).sum(1))
+    assert float(samples_alike(series[None])) == pytest.approx((samples // 2 + 1) / (2 * lines), rel=1e-3)
+    assert samples_alike(series.new_zeros(0, 2, samples)).shape == (0,)
+
+
+@pytest.mark.parametrize("shape", [(1, 200), (4, 3000), (9, 801)])
+def test_samples_of_white_noise_count_as_many(shape):
+    drawn = torch.tensor(np.random.default_rng(2).normal(size=(200, *shape)))
+    assert float((samples_alike(drawn) == 1).double().mean()) > 0.98
+
+
 @pytest.mark.parametrize("cubic", [0.0, 3e5])
 def test_it_is_weighed_against_what_is_left(cubic):
     """Without a cubic spring that is the noise; with one it is a hundred times as much, and the statement counts."""
     values = measured(cubic)
     problem, found = fitted(values)
     left = float(found.prediction.residual.square().mean().sqrt())
-    at, residual = weighed_by(max(left, NOISE), values)
+    level = max(left, NOISE) * alike(found.prediction.residual[0, 0].numpy()) ** 0.5
+    at, residual = weighed_by(level, values)
     assert np.sqrt(np.mean(residual**2)) == pytest.approx(left, rel=1e-3)
     assert found.shared.numpy() == pytest.approx(at, rel=1e-3, abs=1e-5)
     by_noise, _ = weighed_by(NOISE, values)
     assert (abs(by_noise[0] - at[0]) > DEVIATION) == (cubic > 0)
     assert problem.expectation(found.shared, found.prediction.residual[0])[1][0] == pytest.approx(
-        max(left, NOISE) / DEVIATION, rel=1e-6
+        level / DEVIATION, rel=1e-6
     )
 
 

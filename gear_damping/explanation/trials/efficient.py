@@ -58,4 +58,5 @@ def weighed(outcome: Outcome, evidence: Evidence) -> Outcome:
 def _whitened(found: Prediction, whiten: Whitener) -> Prediction:
     sensitivity, residual = found.sensitivity, found.residual
     columns = whiten(sensitivity[0].flatten(0, 1)).reshape(sensitivity.shape)
-    return replace(found, sensitivity=columns, residual=whiten(residual.reshape(-1, 1)).reshape(residual.shape))
+    white = whiten(residual.reshape(-1, 1)).reshape(residual.shape)
+    return replace(found, sensitivity=columns, residual=white, level=None)

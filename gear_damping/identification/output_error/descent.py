@@ -96,7 +96,7 @@ class Descent:
         if self.lent:
             columns = problem.response.cut(self.lent.columns.permute(2, 0, 1), horizon).permute(1, 2, 0)
             self.linearised.sensitivity[..., self.lent.places] = columns
-        self.cost = self._cost(points, self.linearised.residual)
+        self.cost = self._cost(points, self.linearised.residual, self.linearised.level)
         self.damping = torch.full_like(self.cost, FIRST_DAMPING)
         self.calm, self.made, self.carried, self.short = torch.zeros(4, len(self.cost), dtype=torch.long)
         self.looked_at = self.made - 1
@@ -151,7 +151,7 @@ class Descent:
         if is_known and self.strayed[left].any():
             trial = accelerated(self.problem, points, linearised, self.damping[left], trial, self.horizon)
         seen = self._looked_at(trial)
-        old, cost = self.cost[left], self._cost(trial, seen.residual)
+        old, cost = self.cost[left], self._cost(trial, seen.residual, linearised.level)
         if not self.at_once and not self.lent and (self.ends.reach < inf or len(self.cost) > 1):
             self._look_ahead(left[self.looked_at[left] < self.made[left]])
         gain, better = old - cost, cost < old
@@ -161,11 +161,12 @@ class Descent:
         self.linearised.residual[taken], self.cost[taken] = seen.residual[better], cost[better]
         if self.at_once:
             self.linearised.sensitivity[taken] = seen.sensitivity[better]
+            self._weigh_anew(taken, seen.level[better])
             self.made[left] += 1
             return
         changes = moves(self.problem, points, trial)
         linear = linearised.along(changes)
-        foretold = old - self._cost(trial, linearised.residual - linear)
+        foretold = old - self._cost(trial, linearised.residual - linear, linearised.level)
         self.carried[taken] += 1
         self._carry(taken, (linearised.residual - seen.residual - linear)[better], changes[better])
         astray = torch.where(better, ~(gain >= FORETOLD * foretold) & ~flat, ~fresh)
@@ -203,7 +204,7 @@ class Descent:
         )
         linear = linearised.along(moves(self.problem, points, end))
         best = torch.where(self.cost[fresh] > self.cost.min(), self.cost.min(), inf)  # of another start
-        falls_short = self._cost(end, linearised.residual - linear) > best.clamp(max=self.ends.reach)
+        falls_short = self._cost(end, linearised.residual - linear, linearised.level) > best.clamp(max=self.ends.reach)
         self.short[fresh] = torch.where(falls_short, self.short[fresh] + 1, 0)
 
     def _carry(self, places: Tensor, missed: Tensor, changes: Tensor) -> None:
@@ -221,10 +222,16 @@ class Descent:
         if self.lent:
             found.sensitivity[..., self.lent.places] = self.linearised.sensitivity[places][..., self.lent.places]
         self.linearised.sensitivity[places] = found.sensitivity
+        self._weigh_anew(places, found.level)
         self.carried[places] = 0
         self.made[places] += 1
         self.costs[places] = torch.cat([self.costs[places, 1:], self.cost[places, None]], 1)
 
-    def _cost(self, points: Points, residual: Tensor) -> Tensor:
-        total = self.problem.cost(points.shared, residual)
+    def _weigh_anew(self, places: Tensor, level: Tensor) -> None:
+        """Expectations weighed by what is left where starts are linearised: from there to the next they count alike."""
+        self.linearised.level[places] = level
+        self.cost[places] = self._cost(self.points.pick(places), self.linearised.residual[places], level)
+
+    def _cost(self, points: Points, residual: Tensor, level: Tensor) -> Tensor:
+        total = self.problem.cost(points.shared, residual, level)
         return torch.where(total.isfinite(), total, torch.full_like(total, float("inf")))

@@ -39,6 +39,7 @@ from gear_damping.simulation.simulate import natural_units, simulate
 from gear_damping.simulation.solver_settings import Solver
 
 STRETCHES = 8  # of a record, over which the amplification of an error is followed
+BY_CHANCE = 3.0  # deviations by which lines of white noise differ, one in a thousand times
 PROBED = 64  # samples from which the scale of an initial state of an effect is found
 
 
@@ -48,11 +49,13 @@ class Prediction:
 
     The columns are the shared parameters, then the states at the start of the record (`OutputErrorProblem.local`).
     The samples are those of the response channels one after another; beyond the end of a shorter record both are 0.
+    `level` (starts,) is what expectations of the parameters were weighed by there; None where nobody asks.
     """
 
     residual: Tensor
     sensitivity: Tensor
     channels: int = 1
+    level: Tensor | None = None
 
     def along(self, changes: Tensor) -> Tensor:
         """What changes of the columns' coordinates (starts, records, columns) do to the response, linearised."""
@@ -60,7 +63,22 @@ class Prediction:
 
     def pick(self, index: Tensor) -> "Prediction":
         """Some of the starts."""
-        return replace(self, residual=self.residual[index], sensitivity=self.sensitivity[index])
+        level = None if self.level is None else self.level[index]
+        return replace(self, residual=self.residual[index], sensitivity=self.sensitivity[index], level=level)
+
+
+def samples_alike(residual: Tensor) -> Tensor:
+    """How many samples of residuals (..., records, samples) say together what one of white noise says, (...).
+
+    The power of white noise is spread over all lines of a spectrum, and that of what a model lacks stands in a few:
+    N sum(P^2) / (2 sum(P)^2) of N lines is 1 for the one, within 1 / sqrt(N), and N / 2n for n lines alike.
+    """
+    if residual.numel() == 0:
+        return residual.new_ones(residual.shape[:-2])
+    power = torch.fft.rfft(residual).abs().square().flatten(-2)
+    lines = power.shape[-1]
+    found = lines * power.square().sum(-1) / (2 * power.sum(-1).square()).clamp(min=1e-300)
+    return torch.where(found > 1 + BY_CHANCE / lines**0.5, found, 1.0)  # nor where it is not finite
 
 
 class OutputErrorProblem:
@@ -211,22 +229,36 @@ class OutputErrorProblem:
         factor = torch.where(moved.isfinite() & (moved > 0), 1 / moved, torch.ones_like(moved))
         return torch.cat([own, steps * factor, modes], dim=1)
 
-    def expectation(self, shared: Tensor, residual: Tensor) -> tuple[Tensor, Tensor]:
+    def expectation(self, shared: Tensor, residual: Tensor, level: Tensor | None = None) -> tuple[Tensor, Tensor]:
         """Residuals of what is expected of the parameters, and their slopes, both (..., n_shared).
 
         They are weighed against what is left where that is more than noise: a model that lacks something tells its
         parameters no better than it follows. Weighed against the noise, a stated inertia bends by thirteen of its
-        deviations for the last per mille of a residual that is thirty times the noise.
+        deviations for the last per mille of a residual that is thirty times the noise. Where samples of what is left
+        hang together, as lines of the mesh do, they count as the few that they are: else it bends by twelve for 3 %.
 
         Args:
             shared: Coordinates, (..., n_shared).
             residual: Weighted residuals there, (..., records, samples).
+            level: What they are weighed against, (...); what is left there where absent.
         """
-        return self.unknowns.expectation(shared, self._level(residual).unsqueeze(-1))
+        level = self.level(residual) if level is None else level
+        return self.unknowns.expectation(shared, level.unsqueeze(-1))
 
-    def cost(self, shared: Tensor, residual: Tensor) -> Tensor:
+    def level(self, residual: Tensor) -> Tensor:
+        """Standard deviation in residuals (..., records, samples) of what as many samples of noise would say, (...)."""
+        return self._level(residual) * samples_alike(residual).sqrt()
+
+    def expected_information(self, shared: Tensor, residual: Tensor) -> Tensor:
+        """What is expected of the parameters as information beside that of the samples, (n_shared,).
+
+        Each counts as one sample, so that what no sample speaks of keeps its stated deviation.
+        """
+        return self.unknowns.expectation(shared, self._level(residual).unsqueeze(-1))[1].square()
+
+    def cost(self, shared: Tensor, residual: Tensor, level: Tensor | None = None) -> Tensor:
         """Sum of squares of what is left and of what is expected of the parameters, (...); arguments as before."""
-        return residual.square().sum((-2, -1)) + self.expectation(shared, residual)[0].square().sum(-1)
+        return residual.square().sum((-2, -1)) + self.expectation(shared, residual, level)[0].square().sum(-1)
 
     def _level(self, residual: Tensor) -> Tensor:
         """Root mean square of what is left, (...), or the noise where that is more; 0 where no noise is known."""
@@ -353,7 +385,7 @@ class OutputErrorProblem:
         sensitivity = residual.new_zeros(*residual.shape, steps.shape[1])
         places = [c for cs in moved for c in cs] + list(range(self.n_shared, steps.shape[1]))
         sensitivity[..., places] = torch.cat(columns, -1)
-        return Prediction(residual, sensitivity, len(self.response.channels))
+        return Prediction(residual, sensitivity, len(self.response.channels), self.level(residual))
 
 
 def prepare_predictions(

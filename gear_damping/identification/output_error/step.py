@@ -46,7 +46,7 @@ def newton_step(problem: OutputErrorProblem, points: Points, linearised: Predict
     One that would go further than the longest step goes just so far, and the others do the best they can beside it:
     cut by themselves, steps leave a narrow valley (the coefficient of a power law, beside its exponent).
     """
-    expected, slope = problem.expectation(points.shared, linearised.residual)
+    expected, slope = problem.expectation(points.shared, linearised.residual, linearised.level)
     equations = normal_equations(linearised, problem.n_shared)
     equations = replace(equations, pull=equations.pull + slope * expected)
     free = problem.unknowns.at_bound(points.shared) * equations.pull <= 0
@@ -71,7 +71,7 @@ def accelerated(
     straight = linearised.residual - linearised.along(moves(problem, points, ahead))
     bend = (problem.residuals(ahead.shared, ahead.states, horizon) - straight) / AHEAD**2
     equations = normal_equations(replace(linearised, residual=bend.nan_to_num(0, 0, 0)), problem.n_shared)
-    slope = problem.expectation(points.shared, linearised.residual)[1]
+    slope = problem.expectation(points.shared, linearised.residual, linearised.level)[1]
     second = _stepped(problem, points, equations.beside(slope), damping, shared != 0)
     lengths = linearised.sensitivity.square().sum(2)
     step, turn = ((moves(problem, points, to).square() * lengths).sum((1, 2)) for to in (first, second))

@@ -32,7 +32,8 @@ def covariance(
         mean_free: Places of parameters whose mean acts on nothing and is 0.
     """
     residual = fitted.prediction.residual[0]
-    orthogonal, information = _information(problem, fitted, mean_free)
+    expected = problem.expected_information(fitted.shared, residual)
+    orthogonal, information = _information(problem, fitted, expected, mean_free)
     inverse = _inverse(information)
     scores = orthogonal * residual.unsqueeze(-1)
     lags = [round(correlated_s * record.sampling_rate) for record in problem.records]
@@ -50,7 +51,8 @@ def covariance(
 
 def noise_covariance(problem: OutputErrorProblem, fitted: Fitted) -> Tensor:
     """The same where nothing but white noise is left, (n_shared, n_shared)."""
-    return _inverse(_information(problem, fitted)[1]) * problem.noise**2
+    expected = problem.expected_information(fitted.shared, fitted.prediction.residual[0])
+    return _inverse(_information(problem, fitted, expected)[1]) * problem.noise**2
 
 
 def without_one(
@@ -66,7 +68,8 @@ def without_one(
         groups: The group of every record of the problem, from 0 on.
         mean_free: Places of parameters whose mean acts on nothing and is 0.
     """
-    orthogonal, information = _information(problem, fitted, mean_free)
+    expected = problem.expectation(fitted.shared, fitted.prediction.residual[0])[1].square()  # as the fit weighed it
+    orthogonal, information = _information(problem, fitted, expected, mean_free)
     pull = torch.einsum("rtn,rt->rn", orthogonal, fitted.prediction.residual[0])
     own = orthogonal.transpose(1, 2) @ orthogonal
     of_group = torch.nn.functional.one_hot(torch.tensor(groups)).double()
@@ -77,15 +80,17 @@ def without_one(
 
 
 def _information(
-    problem: OutputErrorProblem, fitted: Fitted, mean_free: Sequence[Sequence[int]] = ()
+    problem: OutputErrorProblem, fitted: Fitted, expected: Tensor, mean_free: Sequence[Sequence[int]] = ()
 ) -> tuple[Tensor, Tensor]:
-    """Sensitivities, the records' own projected out, (records, time, n_shared), and the sum of their products."""
+    """Sensitivities, the records' own projected out, (records, time, n_shared), and the sum of their products.
+
+    With the information of what is expected, (n_shared,), in it.
+    """
     sensitivity = fitted.prediction.sensitivity[0]
     orthogonal = project_out(sensitivity[..., : problem.n_shared], nuisance_basis(sensitivity, problem.n_shared))
     known = orthogonal.isfinite().all(1).all(0) & orthogonal.square().sum((0, 1)).isfinite()
     orthogonal = torch.where(known, orthogonal, 0.0)  # of a fit that runs away with any change nothing is known
     jacobian = orthogonal.flatten(0, 1)
-    expected = problem.expectation(fitted.shared, fitted.prediction.residual[0])[1].square()
     information = jacobian.T @ jacobian + torch.diag(expected)
     for places in map(torch.tensor, mean_free):  # a mean that is known as well as all of the differences together
         information[places.unsqueeze(1), places] += information.diagonal()[places].sum() / len(places)
