@@ -14,6 +14,7 @@ from gear_damping.identification.output_error.records import FitRecord, FreePara
 from gear_damping.identification.output_error.uncertainty import noise_covariance
 from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.model import Model
+from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.physics.systems.oscillator import Oscillator
 
 STATED, DEVIATION, DAMPING = (2 * math.pi * 10) ** 2, 0.002, 4.0
@@ -64,13 +65,6 @@ def weighed_by(level, values):
     return rows.x[:2], residual(rows.x)
 
 
-def alike(residual):
-    """Samples that say what one says, by the lines of a spectrum that hold the power: 1 of white noise."""
-    power = np.abs(np.fft.rfft(residual)) ** 2
-    found = len(power) * np.sum(power**2) / (2 * np.sum(power) ** 2)
-    return found if found > 1 + 3 / len(power) ** 0.5 else 1.0
-
-
 @pytest.mark.parametrize(("lines", "samples"), [(1, 4001), (7, 4001), (50, 6000)])
 def test_samples_of_a_few_lines_count_as_few(lines, samples):
     at = np.arange(samples)
@@ -86,20 +80,31 @@ def test_samples_of_white_noise_count_as_many(shape):
     assert float((samples_alike(drawn) == 1).double().mean()) > 0.98
 
 
+def test_lines_of_a_mesh_count_as_few_and_a_decay_as_all_of_its_samples():
+    """A residual of one line beside a prior of .2 %: of a gear pair as two samples, of an oscillator as 300."""
+    line = torch.tensor(np.cos(2 * np.pi * 9 * np.arange(SAMPLES) / SAMPLES))[None, None]
+    record = FitRecord("a", torch.zeros(SAMPLES, dtype=torch.float64), RATE, {}, {"pinion_speed": 10.0})
+    pair = Model(GearPair(), [effect_class(name)() for name in ("fourier_mesh_stiffness", "viscous_damping")])
+    levels = [
+        float(OutputErrorProblem(model, {"amplitude": 0.05} if known else {}, [], [record], noise=NOISE).level(line))
+        for model, known in ((pair, False), (Model(Oscillator(), [effect_class("viscous_damping")()]), True))
+    ]
+    assert levels == pytest.approx([0.5**0.5 * (151 / 2) ** 0.5, 0.5**0.5], rel=1e-6)
+
+
 @pytest.mark.parametrize("cubic", [0.0, 3e5])
 def test_it_is_weighed_against_what_is_left(cubic):
     """Without a cubic spring that is the noise; with one it is a hundred times as much, and the statement counts."""
     values = measured(cubic)
     problem, found = fitted(values)
     left = float(found.prediction.residual.square().mean().sqrt())
-    level = max(left, NOISE) * alike(found.prediction.residual[0, 0].numpy()) ** 0.5
-    at, residual = weighed_by(level, values)
+    at, residual = weighed_by(max(left, NOISE), values)
     assert np.sqrt(np.mean(residual**2)) == pytest.approx(left, rel=1e-3)
     assert found.shared.numpy() == pytest.approx(at, rel=1e-3, abs=1e-5)
     by_noise, _ = weighed_by(NOISE, values)
     assert (abs(by_noise[0] - at[0]) > DEVIATION) == (cubic > 0)
     assert problem.expectation(found.shared, found.prediction.residual[0])[1][0] == pytest.approx(
-        level / DEVIATION, rel=1e-6
+        max(left, NOISE) / DEVIATION, rel=1e-6
     )
 
 

@@ -161,7 +161,7 @@ class Descent:
         self.linearised.residual[taken], self.cost[taken] = seen.residual[better], cost[better]
         if self.at_once:
             self.linearised.sensitivity[taken] = seen.sensitivity[better]
-            self._weigh_anew(taken, seen.level[better])
+            self._weigh_anew(taken, None if seen.level is None else seen.level[better])
             self.made[left] += 1
             return
         changes = moves(self.problem, points, trial)
@@ -227,11 +227,13 @@ class Descent:
         self.made[places] += 1
         self.costs[places] = torch.cat([self.costs[places, 1:], self.cost[places, None]], 1)
 
-    def _weigh_anew(self, places: Tensor, level: Tensor) -> None:
+    def _weigh_anew(self, places: Tensor, level: Tensor | None) -> None:
         """Expectations weighed by what is left where starts are linearised: from there to the next they count alike."""
+        if level is None:
+            return
         self.linearised.level[places] = level
         self.cost[places] = self._cost(self.points.pick(places), self.linearised.residual[places], level)
 
-    def _cost(self, points: Points, residual: Tensor, level: Tensor) -> Tensor:
+    def _cost(self, points: Points, residual: Tensor, level: Tensor | None) -> Tensor:
         total = self.problem.cost(points.shared, residual, level)
         return torch.where(total.isfinite(), total, torch.full_like(total, float("inf")))

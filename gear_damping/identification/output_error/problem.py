@@ -31,6 +31,7 @@ from gear_damping.identification.output_error.unknowns import (
     segments_of,
 )
 from gear_damping.physics.model import Model
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.simulation.driven import Driven
 from gear_damping.simulation.prepare import Planned, prepare_kernels
 from gear_damping.simulation.runs import Runs, effect_state_units
@@ -234,8 +235,8 @@ class OutputErrorProblem:
 
         They are weighed against what is left where that is more than noise: a model that lacks something tells its
         parameters no better than it follows. Weighed against the noise, a stated inertia bends by thirteen of its
-        deviations for the last per mille of a residual that is thirty times the noise. Where samples of what is left
-        hang together, as lines of the mesh do, they count as the few that they are: else it bends by twelve for 3 %.
+        deviations for the last per mille of a residual that is thirty times the noise. Lines of a mesh count as the few
+        that they are, however many samples show them: else it bends by twelve for 3 %.
 
         Args:
             shared: Coordinates, (..., n_shared).
@@ -246,8 +247,21 @@ class OutputErrorProblem:
         return self.unknowns.expectation(shared, level.unsqueeze(-1))
 
     def level(self, residual: Tensor) -> Tensor:
-        """Standard deviation in residuals (..., records, samples) of what as many samples of noise would say, (...)."""
-        return self._level(residual) * samples_alike(residual).sqrt()
+        """What expectations are weighed against, of residuals (..., records, samples), (...).
+
+        A mesh repeats itself, and what a model lacks of it with it; a motion that dies away, or is driven at random,
+        says something else in every sample.
+        """
+        level = self._level(residual)
+        return level * samples_alike(residual).sqrt() if self._repeats else level
+
+    def held_level(self, residual: Tensor) -> Tensor | None:
+        """The same, where it is held until the next linearisation; None where it follows what is left at once."""
+        return self.level(residual) if self._repeats else None
+
+    @property
+    def _repeats(self) -> bool:
+        return self.model.system.has(Trait.TEETH)
 
     def expected_information(self, shared: Tensor, residual: Tensor) -> Tensor:
         """What is expected of the parameters as information beside that of the samples, (n_shared,).
@@ -385,7 +399,7 @@ class OutputErrorProblem:
         sensitivity = residual.new_zeros(*residual.shape, steps.shape[1])
         places = [c for cs in moved for c in cs] + list(range(self.n_shared, steps.shape[1]))
         sensitivity[..., places] = torch.cat(columns, -1)
-        return Prediction(residual, sensitivity, len(self.response.channels), self.level(residual))
+        return Prediction(residual, sensitivity, len(self.response.channels), self.held_level(residual))
 
 
 def prepare_predictions(

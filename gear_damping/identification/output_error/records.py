@@ -27,8 +27,8 @@ class FreeParameter:
         lower: Smallest value.
         upper: Largest value.
         deviation: Standard deviation of what is expected of it beforehand, about `expected`; relative for a
-            logarithmic one. It counts like one sample of what is left, or of the noise where that is more, among so many
-            as say something of their own.
+            logarithmic one. It counts like one sample of what is left, or of the noise where that is more, among those
+            that say something of their own.
         expected: Mean of that expectation; a logarithmic one expects its start where absent, another one 0.
         per_record: Whether every record has a value of its own, as of an angle at its start.
         places: Angles all around at which such an angle is tried where nothing is known of it; as usual where 0.
