@@ -107,7 +107,7 @@ def test_nothing_is_found_in_an_oscillator_that_is_linear(seed, channel):
 @pytest.mark.parametrize(
     ("effect", "seed", "channel", "kind", "unit", "alike"),
     [
-        ("cubic_stiffness", 1, "velocity", "random", "V", ()),
+        pytest.param("cubic_stiffness", 1, "velocity", "random", "V", (), marks=pytest.mark.slow),
         pytest.param(
             "coulomb_friction", 2, "acceleration", "multisine", "gn", ("asymmetric_friction",), marks=pytest.mark.slow
         ),

@@ -308,7 +308,9 @@ def of_channel(values, order, inputs=None):
     return Recorded(FitRecord("run", series, RATE, inputs or {}, observed=observed), Oscillator, Known({}, {}))
 
 
-@pytest.mark.parametrize(("order", "ratio"), [(0, 0.02), (1, 0.01), pytest.param(2, 0.05, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    ("order", "ratio"), [(0, 0.02), *(pytest.param(*one, marks=pytest.mark.slow) for one in ((1, 0.01), (2, 0.05)))]
+)
 def test_the_spectrum_under_a_random_load_tells_the_damping(order, ratio):
     away, estimator = [], OF_RECORDS["ambient_spectrum"]({})
     for seed in range(8):
