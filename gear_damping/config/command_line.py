@@ -7,6 +7,7 @@ unknown key shall meet our own check, which knows the nearest valid one, and not
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -30,6 +31,7 @@ PLACES = ("hydra.run.dir", "hydra.sweep.dir")  # where the output of one run lie
 OF_A_PATH = (PATH, "checkpoint", "resume", "sweep", "data_folder", *PLACES)
 NAMES_FILES = (*OF_A_PATH, "simulator.extended", "simulator.plugins", "measurement.plugins", "model.plugins")
 _AT_HOME = re.compile(r"(?<=[=,\[])~/")
+MOST_PARSED = 1024  # overrides that are kept as they were parsed: more than a command line has
 LONGEST_KEY = 200  # letters; a folder of configurations is looked up by them, and file systems end at 255
 OFF_BY_NULL = ("experiment",)  # groups that may be left out
 SHOWS = ("--cfg", "-c", "--info", "-i", "--resolve", "--version", "--hydra-help", "--shell-completion", "-sc")
@@ -217,8 +219,9 @@ def _unknown_choices(group: str, value: str) -> list[Problem]:
     ]
 
 
+@lru_cache(MOST_PARSED)
 def parse(override: str) -> Override:
-    """One override as Hydra understands it.
+    """One override as Hydra understands it; nobody changes it, and the place of every key asks for it anew.
 
     Raises:
         HydraException: its syntax is broken.
