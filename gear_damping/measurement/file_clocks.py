@@ -17,9 +17,7 @@ from gear_damping.measurement.time_column import (
 )
 from gear_damping.measurement.timebase import RATE_TOLERANCE
 
-_AS_STATED = (
-    0.1  # of a rate that is set, by which a recorder may be slower or faster: no unit and no divider is as near
-)
+_AS_STATED = 0.1  # of a rate that is set, by which a recorder may be off: no unit and no divider is as near
 _DOUBTFUL = 1.0  # Hz: LabVIEW writes it where no rate was set, and others a step in ms that says no unit
 
 

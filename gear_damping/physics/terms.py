@@ -273,6 +273,11 @@ class Recording:
     gear_angle: Tensor | None = None
     begins: Tensor | None = None
 
+    def times(self, signal: Tensor) -> Tensor:
+        """Seconds since the record began, of which a signal (batch, time) may be a segment; (1 or batch, time)."""
+        time = torch.arange(signal.shape[-1], dtype=signal.dtype, device=signal.device) / self.sampling_rate
+        return time.unsqueeze(0) if self.begins is None else time + self.begins.unsqueeze(1)
+
 
 TANGENTIAL = "tangential_acceleration"  # the channel of what acts on accelerometers that sit on a shaft
 

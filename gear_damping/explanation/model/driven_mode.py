@@ -5,7 +5,7 @@ load does to it says all the same where the other mass swings alone: there it ho
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import pi
 
 import numpy as np
@@ -25,6 +25,7 @@ DRIVEN = 1e-3  # of the largest power of the load in any line: less drives nothi
 SEEN = 0.99  # of the power of the rate beyond the noise, which grows with the frequency: above there is hardly any
 ABOVE = 2.0  # times the power of the noise: what one mass leaves is more of the motion than of the sensor
 TAKES = 0.5  # of what a simpler one leaves: where less is of the other mass, something else is missed, as a friction
+SIZE = 2  # place of the size of what is beside one mass, behind those of the load and of damping
 LOWEST = 3  # lines of a record: below, the window's own width blurs the motion into its rates
 
 
@@ -65,7 +66,7 @@ def driven_mode(records: Sequence[FitRecord], noise: float) -> Mode | None:
     if seen is None:
         return None
     free, braked = (
-        min(seen.tried(_pull, at, zeta, brake * at) for at, zeta in seen.places for brake in brakes)
+        min(seen.tried(PULL, at, zeta, brake * at) for at, zeta in seen.places for brake in brakes)
         for brakes in ((0.0,), BRAKED)
     )
     takes = (1 - TAKES) * (free[0] - seen.sensor)
@@ -78,7 +79,7 @@ def opposed_mode(records: Sequence[FitRecord], noise: float) -> Mode | None:
     Its `mass_ratio` is that of the residues.
     """
     seen = _Seen.of(records, noise)
-    return None if seen is None else seen.mode(*min(seen.tried(_opposed, *place) for place in seen.places))
+    return None if seen is None else seen.mode(*min(seen.tried(OPPOSED, *place) for place in seen.places))
 
 
 @dataclass(frozen=True)
@@ -110,17 +111,30 @@ class _Seen:
         alone, _ = _left(lines)
         return None if alone < ABOVE * sensor else cls(lines, places, sensor, alone)
 
-    def tried(self, beside: Callable[..., list[Array]], *place: float) -> tuple[float, ...]:
+    def tried(self, beside: "_Beside", *place: float) -> tuple[float, ...]:
         """Share that is left beside something at a place, its size over what its columns are of, and the place."""
-        left, sizes = _left(self.lines, lambda one: beside(one, *place))
-        of = 1.0 if beside is _pull else max(sizes[0], 1e-300)
-        return left, float(sizes[2] / of), *place
+        left, sizes = _left(self.lines, beside, place)
+        of = max(sizes[0], 1e-300) if SIZE in beside.of_load else 1.0
+        return left, float(sizes[SIZE] / of), *place
 
     def mode(self, left: float, ratio: float, angular: float, damping: float, drag: float = 0.0) -> Mode | None:
         """One that was tried, where it takes most of what one mass leaves."""
         if left - self.sensor >= (1 - TAKES) * (self.alone - self.sensor):
             return None
         return Mode(angular / (2 * pi), ratio, damping, drag)
+
+
+@dataclass(frozen=True)
+class _Beside:
+    """What a rate may hold beside the motion of one mass.
+
+    Args:
+        columns: Of a record's lines at a place, none of which may be negative; the first one has the size.
+        of_load: Places of columns behind those of the load and of damping that go with the load, and have its sign.
+    """
+
+    columns: Callable[..., list[Array]]
+    of_load: tuple[int, ...] = ()
 
 
 def _pull(one: _Lines, natural: float, zeta: float, drag: float) -> list[Array]:
@@ -134,6 +148,9 @@ def _opposed(one: _Lines, natural: float, zeta: float) -> list[Array]:
     """What a mode that moves the other way takes from the rate, and from what brakes it."""
     held = natural**2 - one.angular**2 + 2j * zeta * natural * one.angular
     return [-1j * one.angular * one.load / held, -one.load / held]
+
+
+PULL, OPPOSED = _Beside(_pull), _Beside(_opposed, (SIZE, SIZE + 1))  # both of its columns are of the load
 
 
 def _lines(record: FitRecord, noise: float) -> _Lines | None:
@@ -159,25 +176,25 @@ def _lines(record: FitRecord, noise: float) -> _Lines | None:
 
 
 def _left(
-    lines: Sequence[_Lines], beside: Callable[[_Lines], list[Array]] | None = None
+    lines: Sequence[_Lines], beside: _Beside | None = None, place: Sequence[float] = ()
 ) -> tuple[float, NDArray[np.float64]]:
     """Share of the power of all rates that is left, and the sizes of the load, of damping and of what is beside them.
 
     Args:
         lines: Of all records.
-        beside: The columns of that, none of which may be negative.
+        beside: What is beside one mass; nothing where absent.
+        place: Where that is.
     """
-    found = []
-    for sign in (1.0, -1.0):  # the gain of a load may have either
-        columns, wanted = [], []
-        for one in (replace(line, load=sign * line.load) for line in lines):
-            own = [one.load / (1j * one.angular), -one.rate / (1j * one.angular)]
-            own += beside(one) if beside is not None else []
-            *known, rate = (np.r_[column.real, column.imag] for column in (*own, one.rate))
-            columns.append(np.stack(known, 1))
-            wanted.append(rate)
-        matrix, target = np.concatenate(columns), np.concatenate(wanted)
-        scale = np.linalg.norm(matrix, axis=0)
-        sizes, norm = nnls(matrix / scale, target)
-        found.append((float(norm**2 / (target @ target)), sizes / scale))
-    return min(found, key=lambda one: one[0])
+    columns, wanted = [], []
+    for one in lines:
+        own = [one.load / (1j * one.angular), -one.rate / (1j * one.angular)]
+        own += beside.columns(one, *place) if beside is not None else []
+        *known, rate = (np.r_[column.real, column.imag] for column in (*own, one.rate))
+        columns.append(np.stack(known, 1))
+        wanted.append(rate)
+    matrix, target = np.concatenate(columns), np.concatenate(wanted)
+    scale = np.linalg.norm(matrix, axis=0)
+    signs = np.ones((2, len(scale)))
+    signs[1, [0, *(beside.of_load if beside is not None else ())]] = -1.0  # the gain of a load may have either
+    sizes, norm = min((nnls(sign * matrix / scale, target) for sign in signs), key=lambda one: one[1])
+    return float(norm**2 / (target @ target)), sizes / scale

@@ -92,22 +92,16 @@ def read(path: Path, max_bytes: int) -> Table:
     above += [] if scope is None else scope[2]
     table.stated_rate = stated_rate(above, decimal=decimal)
     table.unread_rate = "" if table.stated_rate else unread_rate(above, decimal)
-    if header.skipped:
-        table.notes += (f"{path.name}: {header.skipped} line(s) before the header are left out",)
-    table.notes += tuple(f"{path.name}: {one}" for one in left_above(above))
-    if header.says:
-        table.notes += (f"{path.name}: {header.says}",)
+    notes = [f"{header.skipped} line(s) before the header are left out"] if header.skipped else []
+    notes += [*left_above(above), header.says]
     if blocks:
         lines_of = [line for line, _ in _values(text, first_line)]
         table.blocks = blocks_of(lines_of, blocks, table.stated_rate, decimal)
         rates = f", of other rates: rows {listed(table.blocks)}" if table.blocks else ""
-        table.notes += (f"{path.name}: {len(blocks)} more block(s) with a header of their own follow the first{rates}",)
-    elif not below and (empty := _empty_rows(text, first_line)):
-        table.notes += (f"{path.name}: {empty}",)
-    if text.cut:
-        table.notes += (f"{path.name}: {text.cut}",)
-    if below:
-        table.notes += (f"{path.name}: {below}",)
+        notes += [f"{len(blocks)} more block(s) with a header of their own follow the first{rates}"]
+    elif not below:
+        notes += [_empty_rows(text, first_line)]
+    table.notes += tuple(f"{path.name}: {one}" for one in [*notes, text.cut, below] if one)
     if decimal == ",":
         table.notes += (decimal_commas(path, _with_commas(text, first_line, parted, table)),)
     return table

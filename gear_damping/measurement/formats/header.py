@@ -146,7 +146,7 @@ def _of_recorder(rows: Sequence[Sequence[str]], width: int) -> Header | None:
 def _labelled(rows: Sequence[Sequence[str]], width: int) -> Header | None:
     """The header whose rows say in a cell before the columns what they hold (`Name`, `Unit`); None of any other."""
     found: dict[str, tuple[str, ...]] = {}
-    end = next((k for k, row in enumerate(rows) if filled(row) == width and all(map(is_written, row[:width]))), 0)
+    end = _first_numbers(rows, width)
     for row in rows[:end]:
         for what, label in _LABELS.items():
             if filled(row) == width + 1 and label.match(row[0].strip()):
@@ -156,7 +156,7 @@ def _labelled(rows: Sequence[Sequence[str]], width: int) -> Header | None:
 
 def _in_pairs(rows: Sequence[Sequence[str]], width: int) -> Header | None:
     """The header whose labels stand again before every channel (NI: `Channel name,Force,Channel name,Torque`)."""
-    end = next((k for k, row in enumerate(rows) if filled(row) == width and all(map(is_written, row[:width]))), 0)
+    end = _first_numbers(rows, width)
     found: dict[str, list[str]] = {}
     is_timed = False
     for row in rows[:end] if width > 2 and width % 2 == 0 else ():
@@ -169,6 +169,11 @@ def _in_pairs(rows: Sequence[Sequence[str]], width: int) -> Header | None:
     units = found.get("units", [""] * (width // 2))
     names = [either for name in found["names"] for either in (f"Time of {name}" if is_timed else "", name)]
     return Header(tuple(names), tuple(cell for unit in units for cell in ("s" * is_timed, unit)), end, end - len(found))
+
+
+def _first_numbers(rows: Sequence[Sequence[str]], width: int) -> int:
+    """The first row that holds numbers alone, one in every column; 0 without one."""
+    return next((k for k, row in enumerate(rows) if filled(row) == width and all(map(is_written, row[:width]))), 0)
 
 
 def _of_two_rows(upper: list[str], lower: list[str], first: int) -> Header | None:

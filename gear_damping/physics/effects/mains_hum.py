@@ -7,11 +7,10 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe, Rig
+from gear_damping.physics.mains import MAINS, STRAYS
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import Recording, Sensor, Values
 
-MAINS = (50.0, 60.0)  # Hz, of public grids
-STRAYS = 0.5  # Hz, by which one strays before consumers are cut off
 FEWEST_CYCLES = 4  # in a record: fewer are an arc, or a swing that dies away
 BEGUN = 0.1  # of the deflection, or of the amplitude of an oscillator, which a linear step finds the size from
 
@@ -53,8 +52,7 @@ class MainsHum(Sensor):
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The record with the hum in it."""
-        time = torch.arange(signal.shape[-1], dtype=signal.dtype, device=signal.device) / recording.sampling_rate
-        if recording.begins is not None:  # of a segment: the hum went on since the record began
-            time = time + recording.begins.unsqueeze(1)
-        wave = torch.sin(2 * pi * values["frequency"].unsqueeze(1) * time + values["phase"].unsqueeze(1))
+        wave = torch.sin(
+            2 * pi * values["frequency"].unsqueeze(1) * recording.times(signal) + values["phase"].unsqueeze(1)
+        )
         return signal + values["amplitude"].unsqueeze(1) * wave

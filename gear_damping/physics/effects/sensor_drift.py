@@ -2,7 +2,6 @@
 
 from typing import ClassVar
 
-import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe, where_there_is_a_spring
@@ -26,7 +25,4 @@ class SensorDrift(Sensor):
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The drifting record."""
-        time = torch.arange(signal.shape[-1], dtype=signal.dtype, device=signal.device) / recording.sampling_rate
-        if recording.begins is not None:  # of a segment: the zero has wandered since the record began
-            time = time + recording.begins.unsqueeze(1)
-        return signal + values["rate"].unsqueeze(1) * time
+        return signal + values["rate"].unsqueeze(1) * recording.times(signal)

@@ -9,14 +9,13 @@ from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.kinematics import Kinematics
+from gear_damping.physics.mains import MAINS, STRAYS
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.shapes import same_length
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Load, Switch, Values
 
 SHORTEST = 1e-9  # natural time that a ramp takes at least: a ramp that ends where it starts is a step
-MAINS = (50.0, 60.0)  # Hz, of public grids
-STRAYS = 0.5  # Hz, by which one strays before consumers are cut off
 
 
 def _as_hum(options: Mapping[str, Any], values: Mapping[str, float], base: Mapping[str, float]) -> str:
