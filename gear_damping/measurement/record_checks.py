@@ -238,14 +238,13 @@ def _rests_elsewhere(record: Record) -> Finding | None:
 def _oversampled(record: Record) -> Finding | None:
     """A record whose fastest content has more than a hundred samples a period.
 
-    Loads count: a slide that drifts slowly answers to them with little of its energy.
+    Loads count: a slide that drifts slowly answers to them with little of its energy. By themselves they do not tell:
+    where only the whole speed of a shaft answers, its vibration is faster than they are.
     """
-    if not record.uniform:
+    judged = [channel for channel in record.channels.values() if channel.name not in (*TURNING, *WHOLE_SPEEDS)]
+    if not record.uniform or all(channel.name in INPUTS for channel in judged):
         return None
-    fastest = 0.0
-    for channel in record.channels.values():
-        if channel.name not in (*TURNING, *WHOLE_SPEEDS):
-            fastest = max(fastest, _fastest_content(channel.values, record.sampling_rate))
+    fastest = max(_fastest_content(channel.values, record.sampling_rate) for channel in judged)
     if fastest == 0.0 or record.sampling_rate <= SAMPLES_PER_PERIOD * fastest:
         return None
     message = (

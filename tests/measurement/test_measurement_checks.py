@@ -235,6 +235,15 @@ def test_what_answers_slowly_to_a_fast_load_is_not_oversampled(bench):
     assert bench.load().findings == ()
 
 
+def test_a_slow_load_beside_the_whole_speed_of_a_shaft_says_nothing_of_oversampling(bench):
+    del bench.channels["transmission_error"]
+    speed = 10 * np.pi + 0.01 * np.sin(2 * np.pi * 2000 * bench.columns["t"])
+    bench.columns["w2"] = speed
+    bench.channels["gear_speed"] = {"column": "w2", "unit": "rad/s"}
+    bench.columns["T1"] = 150 + 10 * np.sin(2 * np.pi * 100 * bench.columns["t"])
+    assert "oversampled" not in [finding.kind for finding in bench.load().findings]
+
+
 @pytest.mark.parametrize("teeth", [33, 34])
 def test_teeth_that_mesh_beyond_the_band_are_a_note(bench, teeth):
     bench.content["parameters"]["n_teeth_pinion"] = {"value": teeth}
