@@ -125,7 +125,11 @@ class GearParameters(Declared):
         if self.mesh_stiffness_max and self.mesh_stiffness_min:
             most, least = self.mesh_stiffness_max.value, self.mesh_stiffness_min.value
             if least > most:
-                refuse("must not lie above mesh_stiffness_max", least, "exchange the two", "mesh_stiffness_min")
+                remedy = (
+                    "exchange the two; where it is so that more pairs are the softer ones, as on a wide helix, "
+                    "contact_ratio is then 1 and the share of the mesh period with the larger one"
+                )
+                refuse("must not lie above mesh_stiffness_max", least, remedy, "mesh_stiffness_min")
         return self
 
 
