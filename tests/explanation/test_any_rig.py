@@ -99,7 +99,14 @@ def test_an_inertia_that_is_stated_wrong_is_a_class_and_no_name():
     assert any("torque" in sentence for sentence in content["sentences"])
 
 
-@pytest.mark.parametrize(("seed", "channel"), [(1, "displacement"), (2, "velocity"), (5, "acceleration")])
+@pytest.mark.parametrize(
+    ("seed", "channel"),
+    [
+        pytest.param(1, "displacement", marks=pytest.mark.slow),
+        (2, "velocity"),
+        pytest.param(5, "acceleration", marks=pytest.mark.slow),
+    ],
+)
 def test_nothing_is_found_in_an_oscillator_that_is_linear(seed, channel):
     assert_null(oscillator("null", seed, channel))
 
@@ -111,7 +118,7 @@ def test_nothing_is_found_in_an_oscillator_that_is_linear(seed, channel):
         pytest.param(
             "coulomb_friction", 2, "acceleration", "multisine", "gn", ("asymmetric_friction",), marks=pytest.mark.slow
         ),
-        ("sine_restoring", 3, "displacement", "decay", "deg", ()),
+        pytest.param("sine_restoring", 3, "displacement", "decay", "deg", (), marks=pytest.mark.slow),
         pytest.param("sensor_delay", 4, "velocity", "random", None, (), marks=pytest.mark.slow),
         pytest.param("quadratic_stiffness", 5, "acceleration", "sweep", None, (), marks=pytest.mark.slow),
         pytest.param("hysteretic_damping", 6, "displacement", "random", "V", (), marks=pytest.mark.slow),

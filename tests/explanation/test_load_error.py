@@ -58,7 +58,10 @@ def known(stamps, derivatives=0):
     return KnownError(stamps, motion, interval, SENSOR**2)
 
 
-@pytest.mark.parametrize("derivatives", [0, 1, 2])
+SLOW = pytest.mark.slow
+
+
+@pytest.mark.parametrize("derivatives", [pytest.param(0, marks=SLOW), 1, pytest.param(2, marks=SLOW)])
 def test_the_motion_is_that_of_an_integrator(derivatives):
     random, lags = np.random.default_rng(2), 60
     found = np.zeros(lags)

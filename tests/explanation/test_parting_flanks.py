@@ -49,6 +49,7 @@ def cost_over_noise(outcome, evidence):
     return outcome.fitted.cost / evidence.noise**2 / float((outcome.problem.response.weights > 0).sum())
 
 
+@pytest.mark.slow
 def test_damping_is_found_where_flanks_part(at_resonance):
     rig, evidence, nominal = at_resonance
     found = with_parting_flanks(evidence, HARMONICS, fitting_solver(None))

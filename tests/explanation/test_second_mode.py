@@ -65,6 +65,7 @@ def test_a_second_mode_is_named_with_its_mass_and_frequency(tmp_path):
     assert found["frequency"]["value"] == pytest.approx(8.2, rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_line_that_somebody_else_drives_is_no_mode(tmp_path):
     """A mode that does not die away, begun anew in every record, would look the same."""
     content = explain(load_measurement(written(tmp_path, 0.0, line=0.1))).content

@@ -25,7 +25,7 @@ def identified(folder, values):
     return gd.identify(gd.load(folder / "measurement.yaml")).damping_ratio_percent
 
 
-@pytest.mark.parametrize("load", [0.0, 0.1])
+@pytest.mark.parametrize("load", [pytest.param(0.0, marks=pytest.mark.slow), 0.1])
 def test_the_interval_of_the_damping_holds(load, tmp_path):
     random, true = np.random.default_rng(11), 100 * DAMPING / (2 * math.sqrt(STIFFNESS))
     found = [identified(tmp_path, pushed(random, load)) for _ in range(RUNS)]
