@@ -50,7 +50,7 @@ def test_units_of_rates_are_read_as_people_write_them(said):
         "Sample rate: 2 kfoo", "Sample rate (foo): 2", "Sample rate in foo: 2", "Sample rate: 1/2000 s",
         "Sample interval: 1/2000", "Sample interval: 1 s per turn", "Sample rate [Hz]: 2 kHz", "X inc: 0.5 mm",
         "Sample rate: 2,000 Hz", "Sample rate: 2 k samples/foo", "Sample interval: 2 k", "Rate: 2000",
-        "Sample rate: 4000 Hz (2 channels)",
+        "Sample rate: 4000 Hz (2 channels)", "Sampling period: 40.000",
     ],
 )  # fmt: skip
 def test_a_rate_whose_unit_is_not_read_is_none(said):

@@ -26,10 +26,11 @@ _PARTED = re.compile(r"[1-9]\d{0,2}(?P<sign>[.,])\d{3}(?:(?P=sign)\d{3})*(?P<res
 
 @dataclass(frozen=True)
 class Size:
-    """One of a unit in SI; `kind` is Hz or s."""
+    """One of a unit in SI; `kind` is Hz or s, and `is_said` tells whether the unit is there."""
 
     factor: float
     kind: str
+    is_said: bool = True
 
 
 def number_said(text: str, decimal: str = ".") -> float | None:
@@ -69,7 +70,7 @@ def size_said(name: str, tail: str, behind: str, is_step: bool) -> Size | None:
     if len(read) == 1:
         return read.pop()
     is_said = any(_PER_CHANNEL.sub("", one).strip(" .()[]") for one in (*named, _phrase(behind)))
-    return None if is_said or read else Size(1.0, "s" if is_step else "Hz")
+    return None if is_said or read else Size(1.0, "s" if is_step else "Hz", is_said=False)
 
 
 def size_of(text: str, is_step: bool = False) -> Size | None:

@@ -115,6 +115,8 @@ def _of_row(row: Sequence[str], beside_arrays: bool, decimal: str) -> tuple[str,
         return None
     if words.re is _BARE and size is None:
         return None  # a rate of something else
+    if is_step and size and not size.is_said and not _is_step(number[0], size):
+        size = None  # as well of ms: EPOS Studio, `Sampling period:;40.000`
     if words.re is _BARE and not behind.strip() and not name[words.end() :].strip(" \t:="):
         size = None  # any rate: a unit alone tells that it is one of samples
     return _measured(words[0].strip(), number[0], size, decimal, line)
