@@ -247,3 +247,22 @@ def test_a_mode_that_gives_back_what_it_took_is_there_whatever_its_size(mass_rat
     refit = made_up(True, SecondMode())
     state = State(bench, nominal, outcome, (Accepted("second_mode", refit, 0.8, ()),))
     assert bool(told_of(state).accepted) == kept
+
+
+@pytest.mark.parametrize(
+    ("share", "others", "at_bound", "kept"),
+    [(0.04, 1, True, False), (0.04, 1, False, True), (0.4, 1, True, True), (0.04, 0, True, True)],
+)
+def test_what_takes_little_at_a_bound_beside_others_is_dropped(share, others, at_bound, kept, monkeypatch):
+    """A friction as wide as half the motion, which takes a twenty-fifth of what was missing."""
+    monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda *_: True)
+    monkeypatch.setattr(Accepted, "runs_into_bound", lambda cause, _: at_bound and cause.name == "b")
+    bench, nominal, outcome, without = bench_leaving(0.3, as_good=False)
+    accepted = (
+        *(Accepted("a", made_up(False), 0.7, ()) for _ in range(others)),
+        Accepted("b", made_up(False), share, ()),
+    )
+    found = told_of(State(bench, nominal, outcome, accepted))
+    assert ("b" in {cause.name for cause in found.accepted}) is kept
+    assert found.outcome is (outcome if kept else without)
+    assert found.unsized == (frozenset() if kept else {"b"})

@@ -1,4 +1,4 @@
-"""Causes whose size the records do not tell from none are dropped."""
+"""Causes whose size the records do not tell from none are dropped, and small ones that bend beside others."""
 
 from dataclasses import replace
 
@@ -7,6 +7,8 @@ from gear_damping.explanation.model.gives_back import gives_back
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.trials.told_size import is_told
+
+BENDS = "has run into a bound of what it can be beside the others"
 
 
 def told(state: State) -> State:
@@ -17,11 +19,17 @@ def told(state: State) -> State:
     there whatever its size. A large rest of its form, by which a size is judged, is no reason against it. That is no
     rescue for what is tried as a whole: of any stiffness and any inertia, the torsion of a shaft bends to what another
     one does. What gives back energy that it took does what nothing else can, though of a free motion the poles of two
-    masses tell four figures of five.
+    masses tell four figures of five. Beside others, what takes little and has run into a bound of what it can be bends
+    to what these leave.
     """
     while (untold := _untold(state)) is not None:
         cause, outcome = untold
-        state.bench.log(f"{cause.name} lowers the cost, but its size is not told from none")
+        why = (
+            f"takes little and {BENDS}"
+            if _bends(state, cause)
+            else "lowers the cost, but its size is not told from none"
+        )
+        state.bench.log(f"{cause.name} {why}")
         kept = tuple(other for other in state.accepted if other is not cause)
         rejected, unsized = (cause.refit, *state.rejected), state.unsized | {cause.name}
         state = replace(state, outcome=outcome, accepted=kept, rejected=rejected, unsized=unsized)
@@ -35,6 +43,8 @@ def _untold(state: State) -> tuple[Accepted, Outcome] | None:
     """
     bench, found = state.bench, []
     for cause in state.accepted:
+        if _bends(state, cause):
+            return cause, bench.without(state.outcome, cause.name)
         runs_away = not state.outcome.is_finite  # with a small change: then it tells nothing
         if not runs_away and is_told(state.outcome, cause.refit, bench.evidence):
             continue
@@ -46,6 +56,12 @@ def _untold(state: State) -> tuple[Accepted, Outcome] | None:
         if not is_missed or bench.is_as_good(outcome, state.outcome):
             found.append((cause, outcome))
     return min(found, key=lambda one: one[1].left_out_cost, default=None)
+
+
+def _bends(state: State, cause: Accepted) -> bool:
+    """Whether a cause beside others takes little, and this at a bound of what it can be."""
+    is_small = len(state.accepted) > 1 and cause.share < state.bench.settings.least_share
+    return is_small and cause.runs_into_bound(state.outcome)
 
 
 def _explain_all(state: State) -> bool:
