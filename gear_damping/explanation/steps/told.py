@@ -8,7 +8,8 @@ from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.trials.told_size import is_told
 
-BENDS = "has run into a bound of what it can be beside the others"
+OF_ANY_SIZE = "lowers the cost, but its size is not told from none"
+BENDS = "takes little beside the others, and this at a bound of what it can be"
 
 
 def told(state: State) -> State:
@@ -24,14 +25,10 @@ def told(state: State) -> State:
     """
     while (untold := _untold(state)) is not None:
         cause, outcome = untold
-        why = (
-            f"takes little and {BENDS}"
-            if _bends(state, cause)
-            else "lowers the cost, but its size is not told from none"
-        )
-        state.bench.log(f"{cause.name} {why}")
+        bends = _bends(state, cause)
+        state.bench.log(f"{cause.name} {BENDS if bends else OF_ANY_SIZE}")
         kept = tuple(other for other in state.accepted if other is not cause)
-        rejected, unsized = (cause.refit, *state.rejected), state.unsized | {cause.name}
+        rejected, unsized = (cause.refit, *state.rejected), state.unsized | (set() if bends else {cause.name})
         state = replace(state, outcome=outcome, accepted=kept, rejected=rejected, unsized=unsized)
     return state
 
