@@ -162,6 +162,11 @@ class LoadPath(Effect):
     def transmitted_load(self, at: Kinematics, p: Values) -> Tensor:
         """The load that reaches the mesh, from `at.drive_load`, the load of the torques."""
 
+    @property
+    def turned_shaft(self) -> str:
+        """The shaft of a gear pair that it turns with another torque than the stated one."""
+        return "pinion"
+
 
 class BearingForce(Effect):
     """A force on a gear in its bearing, along the line of action."""

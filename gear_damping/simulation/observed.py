@@ -27,7 +27,8 @@ def shaft_motion(runs: Runs) -> dict[str, Tensor]:
 
     where a is the acceleration of both pitch circles as one body: 0 where the torques balance. Speeds are those
     about the mean speed of the shafts: the integral of a about its mean, and the share of x'.
-    Errors of geometry move x, so that nothing changes here. Behind the torsion of a shaft T1 is the shaft's torque.
+    Errors of geometry move x, so that nothing changes here. Behind the torsion of the pinion's shaft T1 is the shaft's
+    torque, before that of the gear's T2.
     Load effects (drag, drawn loads, a ripple that the gear's torque follows) enter through x'' alone, as they do where
     that torque balances them, and a ripple that it does not follow enters through a too; so does sliding friction off
     the pitch point, to first order in its coefficient.
@@ -80,7 +81,7 @@ def _participation(runs: Runs) -> tuple[Tensor, Tensor]:
 def _common_acceleration(runs: Runs) -> Tensor:
     """The acceleration of both pitch circles as one body, m/s^2, (batch, time), or (batch, 1) where it is steady."""
     pinion_radius, gear_radius = (runs.derived[f"base_radius_{s}"].unsqueeze(1) for s in ("pinion", "gear"))
-    unbalanced = _unbalanced_torque(runs) / pinion_radius + _sliding(runs)
+    unbalanced = _unbalanced_force(runs) + _sliding(runs)
     if runs.model.system.chosen["gear_torque_mode"] == "held":
         torques = (runs.inputs.get(f"{s}_torque", runs.values[f"{s}_torque"].unsqueeze(1)) for s in ("pinion", "gear"))
         drive, brake = torques
@@ -90,10 +91,11 @@ def _common_acceleration(runs: Runs) -> Tensor:
     return unbalanced / (scale * (1 / pinion + 1 / gear))
 
 
-def _unbalanced_torque(runs: Runs) -> Tensor:
-    """The torque on the pinion beyond the one that is stated, N m, (batch, time) or one 0.
+def _unbalanced_force(runs: Runs) -> Tensor:
+    """The force on both pitch circles as one body beyond that of the stated torques, N, (batch, time) or one 0.
 
-    It is what a shaft transmits beyond what drives it, and what loads have that no torque on the gear balances.
+    It is what a shaft transmits beyond what drives or brakes it, and what loads on the pinion have that no torque on
+    the gear balances. In the load of the mesh torques of both shafts have one sign, on the body opposite ones.
     """
     paths = [effect for effect in runs.model.effects if isinstance(effect, LoadPath)]
     loads = [effect for effect in runs.model.effects if isinstance(effect, Load) and effect.is_unbalanced]
@@ -102,9 +104,13 @@ def _unbalanced_torque(runs: Runs) -> Tensor:
     prepared = runs.model.prepare(runs.values)
     at = _kinematics(runs, prepared)
     at.drive_load = _drive_load(runs, prepared, at)
-    forces = [path.transmitted_load(at, prepared.terms[path.name]) - at.drive_load for path in paths]
-    forces += [load.load_force(at, prepared.terms[load.name]) for load in loads]
-    return (sum(forces) * prepared.scales.force).T / _participation(runs)[0]
+    found = [
+        (path.transmitted_load(at, prepared.terms[path.name]) - at.drive_load, path.turned_shaft) for path in paths
+    ]
+    found += [(load.load_force(at, prepared.terms[load.name]), "pinion") for load in loads]
+    pinion, gear = _compliances(runs)
+    on_body = {"pinion": 1 + gear / pinion, "gear": -(1 + pinion / gear)}  # of a force in the load of the mesh
+    return sum((force * prepared.scales.force).T * on_body[shaft] for force, shaft in found)
 
 
 def _sliding(runs: Runs) -> Tensor:

@@ -127,6 +127,28 @@ def test_behind_a_shaft_that_twists():
     agree(runs, states[2:], slopes[2:], speed_tolerance=1e-3)
 
 
+@pytest.mark.parametrize("mode", ["balanced", "held"])
+def test_before_a_brake_whose_shaft_twists(mode):
+    """Three inertias: the pair, a shaft behind the gear, and a brake."""
+    stiffness, brake, held = 8000.0, 0.02, 300.0
+    given = {"gear_torque": held, "initial_displacement": 3e-5} if mode == "held" else {"initial_displacement": 3e-5}
+    known = {"shaft_torsion.stiffness": stiffness, "shaft_torsion.motor_inertia": brake}
+    path = effect_class("shaft_torsion")(shaft="gear")
+    runs = pair(mode, [path], drive(TIMES), **known, **given, **{"shaft_torsion.damping_ratio": 0.0})
+    twist = float(runs.states["shaft_torsion.twist"][1, 0])
+
+    def slope(t, s):
+        force, shaft = K * (R1 * s[0] - R2 * s[2]), stiffness * (s[2] - s[4])
+        braked = held if mode == "held" else drive(t) * R2 / R1
+        accelerations = (drive(t) - R1 * force) / I1, (R2 * force - shaft) / I2, (shaft - braked) / brake
+        return [s[1], accelerations[0], s[3], accelerations[1], s[5], accelerations[2]]
+
+    start = [3e-5 / R1, 0, 0, 0, -twist, 0]
+    states = solve_ivp(slope, (0, TIMES[-1]), start, "DOP853", TIMES, rtol=1e-12, atol=1e-17).y
+    slopes = np.array([slope(t, s) for t, s in zip(TIMES, states.T, strict=True)]).T
+    agree(runs, states[:4], slopes[:4], speed_tolerance=2e-3)
+
+
 def test_speeds_need_no_acceleration(bench_model):
     model, values = bench_model
     run = {"sampling_rate": 40e3, "n_samples": 40}

@@ -130,6 +130,11 @@ class ShaftTorsion(ExtraStates, LoadPath):
             "fastest_rate": torch.sqrt(mesh_rate + stiffness * (1 / motor + 1 / wheel)),
         }
 
+    @property
+    def turned_shaft(self) -> str:
+        """Its own."""
+        return str(self.chosen["shaft"])
+
     def initial(self, p: Values, base: Values) -> dict[str, Tensor]:
         """Twisted by the mean torque."""
         torque = base["pinion_torque"]
