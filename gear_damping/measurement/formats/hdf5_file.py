@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_damping.measurement.formats.names_beside import named_columns
 from gear_damping.measurement.formats.not_applied import not_applied, said_of
 from gear_damping.measurement.formats.stated_rate import beside_their_units, stated_rate
 from gear_damping.measurement.formats.table import (
@@ -48,11 +49,12 @@ def read(path: Path, max_bytes: int) -> Table:
                 left_out.append(f"{dataset.name.strip('/')} ({kind if dataset.size else 'empty'})")
                 continue
             held += [_held(h5py, path, dataset, field) for field in found]
+        lists = _text_lists(h5py, datasets)
         groups = [one for one in items if not isinstance(one, h5py.Dataset)]
         settings = _settings(groups)
         rates = {one.name.strip("/"): stated for one in groups if (stated := stated_rate(_settings([one])))}
         left = {name: scales for one in datasets if (scales := not_applied(one.attrs)) for name, *_ in _fields(one)}
-    table = ArrayTable(path, held, left_out)
+    table = ArrayTable(path, named_columns(held, lists), left_out)
     table.stated_rate = stated_rate(settings)
     table.stated_rates = rates
     table.not_applied = left
@@ -70,6 +72,20 @@ def _items(file: Any) -> list[Any]:
 def _settings(groups: Iterable[Any]) -> list[list[str]]:
     """The attributes of groups or datasets, each with its name, its value and its unit."""
     return [row for group in groups for row in beside_their_units(dict(group.attrs))]
+
+
+def _text_lists(h5py: Any, datasets: Iterable[Any]) -> dict[str, list[str]]:
+    """The lists of texts in a file by their names: datasets of texts, and attributes of datasets."""
+    lists = {}
+    for one in datasets:
+        found = {name: value for name, value in one.attrs.items() if np.ndim(value) == 1}
+        if h5py.check_string_dtype(one.dtype) and one.ndim == 1:
+            found[one.name] = one[()]
+        for name, value in found.items():
+            texts = [text.decode("utf-8", "replace") if isinstance(text, bytes) else text for text in value]
+            if all(isinstance(text, str) for text in texts):
+                lists[f"{one.name}/{name}"] = texts
+    return lists
 
 
 def _fields(dataset: Any) -> Iterator[tuple[str, str | None, np.dtype, tuple[int, ...]]]:

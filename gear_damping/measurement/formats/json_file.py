@@ -52,7 +52,7 @@ def read(path: Path, max_bytes: int) -> Table:
         units = units_beside((one.name for one in held if one.shape != (1,)), texts)
         held = [replace(one, unit=one.unit or units.get(one.name)) for one in held]
         table = ArrayTable(path, _channels(held), left_out)
-    table.stated_rate = rate_beside(single)
+    table.stated_rate = rate_beside(single, texts)
     table.not_applied = _scales(held, single)
     table.notes += said_of(path.name, table.not_applied)
     return table

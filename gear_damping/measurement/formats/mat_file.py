@@ -2,7 +2,8 @@
 
 Fields of structures are `run.y`, elements of cells and of arrays of structures `c[0]`, `run.y[0]`, columns of a cell
 array with names above its numbers `raw.t [s]`. Where each element of an array of structures has a name and one vector,
-as in MAT files made of TDMS files, that is its name too. A text beside one, `Unit` or `x_unit`, is its unit.
+as in MAT files made of TDMS files, that is its name too. A text beside one, `Unit` or `x_unit`, is its unit, and a
+list of texts beside the only matrix, `names`, names its columns.
 """
 
 import re
@@ -21,6 +22,7 @@ from scipy.io.matlab import MatlabFunction, MatlabOpaque, MatReadWarning, matfil
 
 from gear_damping.measurement.formats.header import bracket_unit
 from gear_damping.measurement.formats.mat_cells import MIXED, columns_of, is_scattered
+from gear_damping.measurement.formats.names_beside import named_columns, text_lists
 from gear_damping.measurement.formats.not_applied import said_beside
 from gear_damping.measurement.formats.octave_text import BEGIN as OCTAVE
 from gear_damping.measurement.formats.octave_text import octave_table
@@ -65,15 +67,17 @@ def read(path: Path, max_bytes: int) -> Table:
         found = dict(_flat(content, ""))
     arrays = {name: value for name, value in found.items() if isinstance(value, np.ndarray)}
     held, left_out = held_arrays(arrays)
-    own, units = _own_names(found), units_beside(*_apart(found))
+    vectors, words = _apart(found)
+    own, units = _own_names(found), units_beside(vectors, words)
     held = [replace(one, unit=units.get(one.name)) for one in held]
     held = [replace(one, name=own[one.name], also=one.name) if one.name in own else one for one in held]
     held = [replace(one, unit=bracket_unit(one.name) or one.unit) for one in held]
     texts = {name: "text" if isinstance(value, np.str_) else value for name, value in found.items()}
     left_out += [f"{name} ({what})" for name, what in texts.items() if name not in arrays]
-    table = ArrayTable(path, held, left_out)
+    table = ArrayTable(path, named_columns(held, text_lists(words, arrays)), left_out)
     table.notes += said_beside(path.name, {name: one.item() for name, one in arrays.items() if _is_number(one)})
-    table.stated_rate = rate_beside({name: one for name, one in arrays.items() if not _is_over_something(name, found)})
+    over_time = {name: one for name, one in arrays.items() if not _is_over_something(name, found)}
+    table.stated_rate = rate_beside(over_time, words)
     return table
 
 

@@ -7,6 +7,7 @@ from zipfile import ZipFile
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_damping.measurement.formats.names_beside import named_columns, text_lists
 from gear_damping.measurement.formats.not_applied import said_beside
 from gear_damping.measurement.formats.stated_rate import rate_beside
 from gear_damping.measurement.formats.table import ArrayTable, Table, held_arrays, is_real, refuse_size, unreadable
@@ -33,10 +34,11 @@ def read(path: Path, max_bytes: int) -> Table:
     held, left_out = held_arrays(arrays)
     texts = {name: str(one.item()) for name, one in arrays.items() if one.dtype.kind == "U" and one.size == 1}
     units = units_beside((one.name for one in held if max(one.shape) > 1), texts)
-    table = ArrayTable(path, [replace(one, unit=units.get(one.name, one.unit)) for one in held], left_out)
+    held = [replace(one, unit=units.get(one.name, one.unit)) for one in held]
+    table = ArrayTable(path, named_columns(held, text_lists({}, arrays)), left_out)
     single = {name: one.item() for name, one in arrays.items() if one.size == 1 and is_real(one.dtype)}
     table.notes += said_beside(path.name, single)
-    table.stated_rate = rate_beside(arrays)
+    table.stated_rate = rate_beside(arrays, texts)
     return table
 
 

@@ -39,6 +39,7 @@ _WITH_SIGNS = re.compile(  # of decimals, or between thousands; behind a letter 
 )
 _OF_A_NAME = re.compile(r"[^\W\d]")  # before a number that is a part of it, as in `CH1` and `Signal_0`
 _SETTING = re.compile(r"\s*[A-Za-z][\w ]*=\s*[-+.\d]")  # a cell of its own: `CH1V,t0 = -0.3,tInc = 5e-04`
+_VALUE = ".value"  # the member of a structure beside `unit`
 _FRAMES = ["Frame", "Sub Frame"]  # the names of the first columns in tables of Vicon
 _LONGEST_NAME = 40  # characters, assumed: what is longer is a sentence
 _LONGEST_LINE = 60  # characters of a line that are told
@@ -160,7 +161,8 @@ def beside_their_units(attributes: Mapping[str, Any]) -> list[list[str]]:
     """Attributes of one value, each as its name, its value and the unit that another one gives it (`dt`, `dt_unit`)."""
 
     def unit_of(name: str) -> str:
-        own = next((attributes[u] for u in (f"{name}_unit", f"{name}_units") if u in attributes), None)
+        named = (f"{name}_unit", f"{name}_units", *([f"{name[: -len(_VALUE)]}.unit"] * name.endswith(_VALUE)))
+        own = next((attributes[u] for u in named if u in attributes), None)
         if own is None and _STEP.search(name):
             own = next((attributes[u] for u in ("time_unit", "time_units") if u in attributes), None)
         return own.decode("utf-8", "replace") if isinstance(own, bytes) else str(own or "")
@@ -168,7 +170,12 @@ def beside_their_units(attributes: Mapping[str, Any]) -> list[list[str]]:
     return [[name, str(value), unit_of(name)] for name, value in attributes.items() if np.size(value) == 1]
 
 
-def rate_beside(arrays: Mapping[str, NDArray]) -> tuple[str, float] | None:
-    """The rate that single numbers beside arrays state (`Fs`, `dt`, `rate`), as `stated_rate` has it."""
+def rate_beside(arrays: Mapping[str, NDArray], texts: Mapping[str, str] | None = None) -> tuple[str, float] | None:
+    """The rate that single numbers beside arrays state (`Fs`, `dt`, `rate`), as `stated_rate` has it.
+
+    Args:
+        arrays: The arrays of the file by their names, its single numbers among them.
+        texts: Its single texts: units of these numbers (`dt_unit`), or a rate with its unit (`fs`, `1 kHz`).
+    """
     single = {name: one.item() for name, one in arrays.items() if one.size == 1 and one.dtype.kind in "fiu"}
-    return stated_rate(beside_their_units(single), beside_arrays=True)
+    return stated_rate(beside_their_units({**single, **(texts or {})}), beside_arrays=True)
