@@ -18,6 +18,7 @@ NAMED_UNITS = {  # by the last word of a name in lower case; neither `in` nor `m
     "mmps2": "mm/s^2", "knm": "kN*m", "ncm": "N*cm", "nmm": "N*mm", "millivolt": "mV", "millivolts": "mV",
     "lbf": "lbf", "kgf": "kgf", "krpm": "krpm", "radps": "rad/s", "mph": "mph", "knots": "knot", "turns": "rev",
     "feet": "ft", "meters": "m", "metres": "m",
+    "gfx": "g", "gfy": "g", "gfz": "g", "tgf": "g", "gforce": "g",
 }  # fmt: skip
 _CASED = {"kN": "kN", "daN": "daN", "mNm": "mN*m", "MNm": "MN*m"}  # whose capitals tell a prefix
 _TIMES = {  # the same of time, in six languages, without what also names any clock: `time of day`, `time tag`, `hora`

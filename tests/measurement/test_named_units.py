@@ -157,3 +157,8 @@ def test_a_missing_unit_is_the_one_of_the_name(tmp_path):
     (tmp_path / "m.yaml").write_text((tmp_path / "m.yaml").read_text().replace("column: 1, unit: mm", "column: 1"))
     with pytest.raises(InputError, match="give the unit of the column, as unit: mm"):
         load_measurement(tmp_path / "m.yaml")
+
+
+@pytest.mark.parametrize("name", ["gFx", "gFz", "TgF"])
+def test_forces_of_gravity_of_a_phone_are_accelerations_in_g(name):
+    assert unit_at_end(name) == "g"

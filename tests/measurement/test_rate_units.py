@@ -34,7 +34,9 @@ def table_of(folder, head, sign=",", decimal=".", numbered=False):
         "#CLOCK=500uS", "2000 SPS", "Rate: 2 kHz", "Sample rate: 2.000,0 Hz", "Sample rate: 2,000.0 Hz",
         "time step h: 0.0005", "Sampling time: 0.5 ms", "Sample time [us]: 500", "Abtastzeit: 0,5 ms",
         "Tastzeit = 500 us", "Période d'échantillonnage: 0.5 ms", "Tempo di campionamento: 0.5 ms",
-        "Sample rate: 2000; mode=fast", "dt = 0.0005 mode: fast",
+        "Sample rate: 2000; mode=fast", "dt = 0.0005 mode: fast", "Sample rate: 2 kHz mode: fast", "fs=2 kHz N=1500",
+        "dt = 0.5 ms mode: fast", "Fs (Hz),2000", "Sampling: 2 kHz", "Abtastung: 2000 Hz", "sampled at 2 kHz",
+        "Zeitschritt 0.5 ms",
     ],
 )  # fmt: skip
 def test_units_of_rates_are_read_as_people_write_them(said):
@@ -50,7 +52,8 @@ def test_units_of_rates_are_read_as_people_write_them(said):
         "Sample rate: 2 kfoo", "Sample rate (foo): 2", "Sample rate in foo: 2", "Sample rate: 1/2000 s",
         "Sample interval: 1/2000", "Sample interval: 1 s per turn", "Sample rate [Hz]: 2 kHz", "X inc: 0.5 mm",
         "Sample rate: 2,000 Hz", "Sample rate: 2 k samples/foo", "Sample interval: 2 k", "Rate: 2000",
-        "Sample rate: 4000 Hz (2 channels)", "Sampling period: 40.000",
+        "Sample rate: 4000 Hz (2 channels)", "dt 10", "Sample interval: 5", "Frequency: 1000 Hz", "Frequenz,1,kHz",
+        "Time base: 1 ms", "Sampling period: 40.000",
     ],
 )  # fmt: skip
 def test_a_rate_whose_unit_is_not_read_is_none(said):
@@ -68,6 +71,10 @@ def test_a_rate_whose_unit_is_not_read_is_none(said):
         "Sample time: 12:30",
         "Clock: 16 MHz",
         "version 1.2.3",
+        "Sampling: 10 s",
+        "Sampling: yes, 3",
+        "Natural frequency: 8 Hz",
+        "Frequency: 1000",
     ],
 )
 def test_what_is_no_rate_of_samples_is_not_told_as_one(said):

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import yaml
 
+from gear_damping.measurement.formats.header import bracket_unit
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.formats.unit_words import as_ours
 from gear_damping.measurement.inspection import inspect_table
@@ -38,6 +39,8 @@ def conflicts(folder, name, unit, more=""):
         ("obr/min", "rev/min"), ("U/s", "rev/s"), ("r.p.m.", "rpm"), ("Nmm", "N*mm"), ("N-m", "N*m"),
         ("N-mm", "N*mm"), ("kgf.m", "kgf*m"), ("kgf cm", "kgf*cm"), ("in-lb", "lbf*in"), ("lb-ft", "lbf*ft"),
         ("ft-lbs", "lbf*ft"), ("ozin", "ozf*in"), ("daNm", "daN*m"), ("Newtonmeter", "N*m"),
+        ("мм", "mm"), ("м/с²", "m/s^2"), ("м/с2", "m/s^2"), ("мм/с", "mm/s"), ("об/мин", "rev/min"), ("Н·м", "N*m"),
+        ("毫米", "mm"), ("转/分", "rev/min"),
         ("degrés", "deg"), ("mètres", "m"), ("µm", "µm"), ("1/min", "1/min"), ("U/V", "U/V"),
         ("filtered", "filtered"), ("min.", "min."), ("A side", "A side"), ("x.y.", "x.y."), ("kg·m", "kg·m"),
         ("", ""),
@@ -93,3 +96,23 @@ def test_an_attribute_is_read_as_a_header_is(said, unit, problems, tmp_path):
     (record,) = load_measurement(tmp_path / "m.yaml").records
     assert record.sampling_rate == pytest.approx(100)
     assert [found.kind for found in record.findings].count("unit_conflict") == problems
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [
+        ("Перемещение, мм", "mm"),
+        ("Weg, mm", "mm"),
+        ("Weg, A", None),
+        ("x, mm", None),
+        ("Weg, links", None),
+        ("t, s", None),
+    ],
+)
+def test_a_unit_behind_a_comma_is_that_of_the_word_before_it(name, unit):
+    assert bracket_unit(name) == unit
+
+
+def test_names_and_units_in_russian_are_read(tmp_path):
+    found = inspect_table(read_table(written(tmp_path, "Время, мс", "Скорость (об/мин)")))
+    assert (found.time.unit, found.columns[1].unit) == ("ms", "rev/min")

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from gear_damping.errors import InputError
-from gear_damping.measurement.formats.bracket_words import unit_said
+from gear_damping.measurement.formats.bracket_words import is_known, unit_said
 from gear_damping.measurement.formats.factors import factor_in
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written
 from gear_damping.measurement.formats.unit_words import as_ours
@@ -20,6 +20,7 @@ _WITHIN = re.compile(  # `Position (cm) Monitor Run`, `x {mm}`, where that is a 
 _SLASH = re.compile(r"^[^/]+/\s*([^\W\d_][^\s]*|[°%µ][^\s]*)$")  # `Weg/mm`, as DIN 461 has it
 _ARGUMENT = re.compile(r"^\W*[^\W\d]\w?\s*\((t|k|n)\)\s*$")  # `x(t)`, `F_(t)`: what it is over, and no unit
 _IN = re.compile(r"(?:^|\s)in\s+([^\W\d]\S*|[°%µ]\S*)\s*$")  # `C1 in V`, as oscilloscopes of Rohde & Schwarz have it
+_COMMA = re.compile(r"^[^,]*[^\W\d_]{2}[^,]*,\s*(\S+)\s*$")  # `Время, с`, `Weg, mm`: behind a word
 _INDEX = re.compile(r"\w\[\d+\]\s*$")  # `data[3]` is a name, no unit
 _NO_UNIT = ("", "-", "#")
 _IN_BRACKETS = re.compile(r"\[.*\]|\(.*\)")  # a cell as it stands below a name for its unit alone
@@ -276,10 +277,17 @@ def bracket_unit(name: str) -> str | None:
         return None if is_number(found[1]) else found[1].strip()
     if (said := _IN.search(name)) and _is_unit(said[1]):
         return said[1]
+    if (behind := _COMMA.match(name)) and is_known(said := as_ours(behind[1])) and _is_hardly_a_word(behind[1], said):
+        return said
     if compound := compound_at_end(name):
         return compound
     behind = _SLASH.search(name.strip())
     return behind[1] if behind is not None and (_is_unit(behind[1]) or scaled_unit(behind[1])) else None
+
+
+def _is_hardly_a_word(text: str, unit: str) -> bool:
+    """Whether a unit behind a comma is one: a letter may as well be a side or an axis, but for that of seconds."""
+    return len(unit) > 1 or unit == "s" or not text.isascii()
 
 
 def is_among_words(name: str, unit: str) -> bool:

@@ -26,7 +26,7 @@ _PARTED = re.compile(r"[1-9]\d{0,2}(?P<sign>[.,])\d{3}(?:(?P=sign)\d{3})*(?P<res
 
 @dataclass(frozen=True)
 class Size:
-    """One of a unit in SI; `kind` is Hz or s, and `is_said` tells whether the unit is there."""
+    """One of a unit in SI; `kind` is Hz or s. Where nothing says the unit, `is_said` is False."""
 
     factor: float
     kind: str
@@ -101,6 +101,9 @@ def samples_a_time(text: str) -> Size | None:
 def _phrase(behind: str) -> str:
     """What stands behind a number and may be its unit; "" where nothing does."""
     behind = _TOLERANCE.sub("", behind)
+    first, _, others = behind.strip().partition(" ")
+    if _OTHER.match(others) and size_of(first) is not None:
+        return first  # `kHz mode: fast`
     return "" if _OTHER.match(behind) else re.split(r"[;|#,]", behind)[0].strip()
 
 

@@ -15,7 +15,8 @@ _END = r"(?:\b|(?=_(?:ns|us|ms|s|hz|khz|mhz)\b))"  # of a name, before its unit 
 _STEP = re.compile(
     r"\b(delta[ _]?[tx]|d[tx]|t ?interval|[tx][ _]?inc(r(ement)?)?|x-axis delta|"
     r"(samp(le|ling)|time|horizontal|record|abtast)[ _-]?(interval\w*|period\w*|increment\w*|step\w*)|"
-    r"(abt|t)astzeit|p[eé]riode d.?[eé]chantillonnage|per[ií]odo de muestreo|(periodo|tempo) di campionamento)" + _END,
+    r"(abt|t)astzeit|zeitschritt|p[eé]riode d.?[eé]chantillonnage|per[ií]odo de muestreo|"
+    r"(periodo|tempo) di campionamento)" + _END,
     re.I,
 )  # fmt: skip
 _RATE = re.compile(
@@ -30,12 +31,17 @@ _STEP_ALONE = re.compile(
     r"(?:^|(?<=[./]))(Ts|x_values\.increment)\s*$"
 )  # of MATLAB, and of its files made by Simcenter
 _BARE = re.compile(r"^\s*rate(?=\W*$|\s*[(\[]|\s+in\s)", re.I)  # of the lines above a table: any rate
+_SAMPLING = re.compile(r"^\s*(sampling|abtastung|acquisition|sampled (?:at|with)|abgetastet mit)\W*$", re.I)
+_UNCLEAR = re.compile(  # above a table: of samples, or of what is driven; of a sample, or of a division of a screen
+    r"^\s*(freq(?:uen(?:cy|z))?|fr[eé]quence|frecuencia|frequenza|time ?base|zeitbasis)\W*$", re.I
+)
 _CLOCK = re.compile(r"^\s*clock\b", re.I)  # Hantek: `#CLOCK:500us`
 _SAMPLED = re.compile(r"\bsampl(e|ing)[ _-]?time" + _END, re.I)  # the step, or how long was sampled:
 _LONGEST_STEP = 0.1  # s, assumed: records are longer
+_LONGEST_UNSAID = 1.0  # assumed: as many and more are no s where nothing says so, but ms or us
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.I)
-_WITH_SIGNS = re.compile(  # of decimals, or between thousands; behind a letter a comma parts cells
-    r"[-+]?(\d+([.,]\d+)*[.,]?|(?<![^\W\d])[.,]\d+)(e[-+]?\d+)?", re.I
+_WITH_SIGNS = re.compile(  # of decimals, or between thousands; behind a letter or a bracket a comma parts cells
+    r"[-+]?(\d+([.,]\d+)*[.,]?|(?<![^\s:=;+\-])[.,]\d+)(e[-+]?\d+)?", re.I
 )
 _OF_A_NAME = re.compile(r"[^\W\d]")  # before a number that is a part of it, as in `CH1` and `Signal_0`
 _SETTING = re.compile(r"\s*[A-Za-z][\w ]*=\s*[-+.\d]")  # a cell of its own: `CH1V,t0 = -0.3,tInc = 5e-04`
@@ -116,11 +122,21 @@ def _of_row(row: Sequence[str], beside_arrays: bool, decimal: str) -> tuple[str,
         return None
     if words.re is _BARE and size is None:
         return None  # a rate of something else
-    if is_step and size and not size.is_said and not _is_step(number[0], size):
-        size = None  # as well of ms: EPOS Studio, `Sampling period:;40.000`
+    if words.re in (_SAMPLING, _UNCLEAR) and not (size and size.is_said):
+        return None
+    if words.re is _SAMPLING and size.kind == "s":
+        return None  # how long was sampled
+    if words.re is _UNCLEAR or _may_be_smaller(number[0], size):
+        size = None
     if words.re is _BARE and not behind.strip() and not name[words.end() :].strip(" \t:="):
         size = None  # any rate: a unit alone tells that it is one of samples
-    return _measured(words[0].strip(), number[0], size, decimal, line)
+    return _measured(words[0].strip(" \t:="), number[0], size, decimal, line)
+
+
+def _may_be_smaller(number: str, size: Size | None) -> bool:
+    """Whether a step is so long, and bears no unit, that it may as well be in ms."""
+    is_unsaid = size is not None and size.kind == "s" and not size.is_said
+    return is_unsaid and (number_said(number) or 0.0) >= _LONGEST_UNSAID
 
 
 def _is_step(number: str, size: Size) -> bool:
@@ -131,7 +147,7 @@ def _words(name: str, beside_arrays: bool) -> tuple[re.Match[str] | None, bool]:
     """The words of a name that state a rate, or the time from one sample to the next, and whether it is the latter."""
     steps, rates = (_STEP, _CLOCK, _SAMPLED, _STEP_ALONE), (_RATE, _ALONE)
     if not beside_arrays:
-        steps, rates = steps[:3], (_RATE, _BARE)
+        steps, rates = steps[:3], (_RATE, _BARE, _SAMPLING, _UNCLEAR)
     step = next((found for one in steps if (found := one.search(name))), None)
     return step or next((found for one in rates if (found := one.search(name))), None), step is not None
 
