@@ -77,6 +77,18 @@ class CommandLine:
         """Whether it shows the configuration of the job as it will run, which is then to be right."""
         return self.shows and "--resolve" in self.flags
 
+    def overruled(self) -> list[str]:
+        """What is said of keys that are given again with another value, of which the last one counts."""
+        values: dict[str, list[str]] = {}
+        for override in self.overrides:
+            key, _, value = override.lstrip("+").partition("=")
+            values.setdefault(key, []).append(value)
+        return [
+            f"{key} is given {len(given)} times: the last, {given[-1]}, counts"
+            for key, given in values.items()
+            if len({*given}) > 1
+        ]
+
     def first_job(self) -> list[str]:
         """The overrides with the first value of each sweep."""
         return [_first(override) for override in self.overrides]

@@ -9,6 +9,7 @@ from gear_damping.measurement import layout
 from gear_damping.measurement.angular_error import along_the_line, is_angle_of_a_shaft, is_angular_acceleration
 from gear_damping.measurement.channels import SEVERAL, AnyChannel, Response, Timed
 from gear_damping.measurement.consistency import inconsistencies
+from gear_damping.measurement.formats.bracket_words import is_count
 from gear_damping.measurement.own_system import NONE, file_of, si_units
 from gear_damping.measurement.record import Quantity
 from gear_damping.measurement.vocabulary import GEAR_CHANNELS, SHAFT_SPEEDS, channels_of, units_of
@@ -257,7 +258,7 @@ def _timing(place: Timed | layout.AnyRecord | None) -> TimePlan | None:
 def _channel(
     name: str, channel: AnyChannel, key: str, sensor: dict[str, object], problems: Problems, source: str
 ) -> ChannelPlan:
-    if channel.unit:
+    if channel.unit and not (channel.si and is_count(channel.unit)):  # of counts the conversion says what helps
         with problems.collecting():
             parse_unit(channel.unit, f"{key}.unit", source)
     limits = {limit: getattr(channel, limit, None) for limit in ("range", "noise")}

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.formats.bracket_words import is_count
 from gear_damping.measurement.record import Quantity
 from gear_damping.measurement.vocabulary import OSCILLATOR_CHANNELS, SHAFT_SPEEDS
 from gear_damping.units import LEVEL, Dimension, Unit, of_a_shaft, other_kind, parse_unit
@@ -15,6 +16,7 @@ from gear_damping.units import LEVEL, Dimension, Unit, of_a_shaft, other_kind, p
 _PER_SECOND = Dimension(time=-1)  # exponent of a derivative in time
 _PER = {0: "", 1: "/s", 2: "/s^2"}
 _VELOCITY, _ANGULAR_ACCELERATION = parse_unit("m/s"), parse_unit("rad/s^2")
+_WHOLE = {"pinion_angle": "rev"}  # what people count the parts of, where it is not the unit in SI
 _BASE = "base_acceleration"  # an input in the unit of the response's acceleration
 
 
@@ -79,6 +81,10 @@ class UnitSystem:
         if text.strip() == LEVEL:
             rule, remedy = "a level is a logarithm, and no signal", "give the values themselves, 10^(level/20)"
             raise InputError(Problem(key, rule, text, remedy, source))
+        if self.si is not None and is_count(text):
+            rule, whole = "says nothing of how much one count is", _WHOLE.get(name, self.si[name])
+            remedy = f"write unit: {whole}, and gain: the counts of one {whole}, by which values are divided"
+            raise InputError(Problem(key, rule, said or text, remedy, source))
         unit = parse_unit(text, key, source)
         if name in SHAFT_SPEEDS and (radius or unit.dimension == _VELOCITY.dimension):
             return _around(unit, radius, self.si[name], key, text, source)

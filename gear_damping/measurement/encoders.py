@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.column_kinds import rises
 from gear_damping.measurement.declaration import EncoderPlan
+from gear_damping.measurement.record import Finding
 from gear_damping.measurement.recordings import past_overflow
 from gear_damping.measurement.timebase import TimeBase, cubic_spline, monotone_spline
-from gear_damping.units import parse_unit, to_si
+from gear_damping.units import is_of_kind, parse_unit, to_si
 
 TURN = 2 * np.pi  # rad in one turn of a shaft
 BEYOND = 2.5  # steps of pulses that a record may go on past them: a pulse lost at its end, and its stamps are rounded
@@ -28,6 +29,7 @@ _CUBIC, _FEWEST_PIECES, _EDGES_EACH = 3, 4, 16  # degree of splines behind them,
 _OFF = 3.0  # deviations by which a spline through rounded edges may be off at either side
 _WITHIN = 1.03  # samples between the earliest and the latest of edges about it: rounding moves them by one in all
 _EVEN, _WHOLE = 0.2, 0.1  # share by which steps beside a lost pulse may differ, and a step from a whole number of them
+_ONE_TURN = 1e-3  # share by which the counts of a turn may differ from the unit of a header: digits that were left out
 _TURN_TOLERANCE = 0.25  # of a turn; a pulse is known to a sample
 ReadColumn = Callable[[str | int, str], NDArray[np.float64]]
 
@@ -172,7 +174,7 @@ def edges_of_square_pulses(
     levels tells nothing of where between them an edge lies.
     """
     last, sample = rises(signal >= threshold), float(np.median(np.diff(time)))
-    if not _are_square(signal, last, threshold):
+    if not last.size or not _are_square(signal, last, threshold):
         return rising_edges(signal, time, threshold), 0.0
     edges = (time[last] + time[last + 1]) / 2  # of two noisy levels what lies between them is the noise
     count = pulse_numbers(edges)
@@ -284,6 +286,26 @@ def pulse_times(plan: EncoderPlan, whole: ReadColumn, file: str) -> NDArray[np.f
     """
     seconds = to_si(1.0, plan.unit, "s", f"{plan.key}.unit", file)
     return past_overflow(whole(plan.column, f"{plan.key}.timestamps")) * seconds
+
+
+def other_turn(plan: EncoderPlan, header: str | None) -> Finding | None:
+    """A header that says an angle, of which a turn has another number than is declared: `[deg]` and 3600 counts.
+
+    Args:
+        plan: The declared encoder.
+        header: The unit that the file gives for its column, or None.
+    """
+    if plan.name == "tacho" or plan.timestamps or header is None or not is_of_kind(header, "rad"):
+        return None
+    turn = TURN / to_si(1.0, header, "rad")
+    if abs(plan.per_revolution / turn - 1) < _ONE_TURN:
+        return None
+    message = (
+        f"the header of column '{plan.column}' says '{header}', of which a turn has {turn:.7g}, and "
+        f"counts_per_revolution: {plan.per_revolution:g} was used; correct the one that is wrong, in a copy of the "
+        "file where it is the header"
+    )
+    return Finding("unit_conflict", message, channel=plan.name)
 
 
 def _refuse_levels(counts: NDArray, plan: EncoderPlan, file: str) -> None:

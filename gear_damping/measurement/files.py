@@ -168,9 +168,10 @@ def _matching(path: Path) -> list[str]:
 
 def _neighbour(path: Path) -> str:
     """The file beside it that has nearly the name of a missing one, as the start of a remedy."""
-    beside = [one.name for one in path.parent.iterdir() if one.is_file()] if path.parent.is_dir() else []
-    found = get_close_matches(path.name, beside, n=1, cutoff=_ALIKE)
-    return f"did you mean '{found[0]}'? " if found else ""
+    names = sorted(one.name for one in path.parent.iterdir() if one.is_file()) if path.parent.is_dir() else []
+    beside = {name.lower(): name for name in names}
+    found = get_close_matches(path.name.lower(), beside, n=1, cutoff=_ALIKE)
+    return f"did you mean '{beside[found[0]]}'? " if found else ""
 
 
 class Files:

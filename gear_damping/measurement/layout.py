@@ -60,7 +60,9 @@ class Encoder(Pulses):
     )
     unit: Annotated[str, Text()] = key("Unit of `timestamps`; where absent that of the file, else s.", "angle")
     counts_per_revolution: Annotated[float, Number(least=1)] = key(
-        "Counts in one turn of its shaft.", "angle", missing="give the number in one turn of its shaft"
+        "Counts in one turn of its shaft.",
+        "angle",
+        missing="give the number in one turn of its shaft, 360 of a column in degrees",
     )
     index: Annotated[str | int, Column()] = key(
         "Column of the index pulse (of its times, beside `timestamps`), which began between the sample that shows it "
@@ -80,7 +82,10 @@ class Tacho(Pulses):
 
     title: ClassVar[str] = "a tacho"
     meant: ClassVar[Mapping[str, str]] = Frozen(
-        dict.fromkeys(("ppr", "cpr", "counts_per_revolution", "pulses", "pulses_per_turn"), _PULSES)
+        {
+            **dict.fromkeys(("ppr", "cpr", "counts_per_revolution", "pulses", "pulses_per_turn"), _PULSES),
+            "shaft": "leave it out: a tacho is that of the pinion; pulses of the gear are encoders.gear, by timestamps",
+        }
     )
     refused: ClassVar[c.Reasons] = Frozen({"index": ("the zero of its angle is its first pulse", "leave it out")})
     unit: Annotated[str, Text()] = key(

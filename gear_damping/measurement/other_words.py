@@ -61,6 +61,12 @@ OF_GEAR_CONDITIONS: Mapping[str, str] = Frozen(
         **_each("temperature oil_temperature oil lubricant", _AS_COMMENT),
     }
 )
+OF_OSCILLATOR_CONDITIONS: Mapping[str, str] = Frozen(
+    {
+        **_each("load torque voltage excitation input", "write force"),
+        **_each("temperature mass amplitude frequency speed rpm", _AS_COMMENT),
+    }
+)
 OF_GEAR_PARAMETERS: Mapping[str, str] = Frozen(
     {
         **_each("z1 z2 N1 N2 teeth n_teeth number_of_teeth", _GEAR_PAIR),

@@ -1,6 +1,6 @@
 """Reading what a record's plan asks for out of its file, before units are compared."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from copy import copy
 from dataclasses import dataclass, replace
@@ -14,7 +14,7 @@ from gear_damping.measurement.by_turns import refuse_by_turns
 from gear_damping.measurement.checks import refuse_not_finite
 from gear_damping.measurement.cutting import rows_beside, slower, window_rows
 from gear_damping.measurement.declaration import ChannelPlan, EncoderPlan, RecordPlan, TimePlan
-from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, pulse_times, shaft_angle
+from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, other_turn, pulse_times, shaft_angle
 from gear_damping.measurement.file_clocks import FileClocks, conflict_with_file, two_clocks
 from gear_damping.measurement.formats.moments import DAY
 from gear_damping.measurement.formats.table import Table
@@ -99,7 +99,7 @@ class RawReader:
                 angles[plan.name] = shaft_angle(self._with_unit(plan), base, self.sliced, self.unsliced, self.file)
         if base is None:
             return None
-        base = replace(base, findings=(*base.findings, *self._worked_out(channels, base)))
+        base = replace(base, findings=(*base.findings, *self._worked_out(channels, base), *self._other_turns(angles)))
         with self.problems.collecting():
             base = self._at_its_rate(base, within)
         complete = len(self.problems) == before
@@ -121,6 +121,13 @@ class RawReader:
             own = self.table.index(rate.plan.column, "")
             others = [(self.table.names[k] or str(k), values) for k, values in read.items() if k != own]
             yield from worked_out(rate.plan.name, rate.values, base.time, others)
+
+    def _other_turns(self, angles: Mapping[str, ShaftAngle]) -> Iterator[Finding]:
+        """What headers of encoders say of a turn, where the declaration says another thing."""
+        for plan in self.plan.encoders:
+            header = self.table.unit(self.table.index(plan.column, plan.key)) if plan.name in angles else None
+            if found := other_turn(plan, header):
+                yield found
 
     def _with_unit(self, plan: EncoderPlan) -> EncoderPlan:
         """An encoder with the unit of its column: as declared, else that of the file, else s of times and V."""
@@ -178,7 +185,8 @@ class RawReader:
         if columns:
             return self.columns.all(*columns[0]).size
         rate = self.plan.timing.sampling_rate
-        if not self.plan.encoders and any(one.key.startswith(f"{self.plan.key}.channels") for one in self.problems):
+        declared = (f"{self.plan.key}.channels", f"{self.plan.key}.encoders")
+        if not self.plan.encoders and any(one.key.startswith(declared) for one in self.problems):
             raise InputError([])  # what was declared for it could not be read, which is said
         if not self.plan.encoders or rate is None:
             rule, remedy = "no column gives the number of samples", "declare a time column"

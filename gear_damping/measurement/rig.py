@@ -186,6 +186,7 @@ class OscillatorConditions(Declared):
     """What was constant in a record of an oscillator."""
 
     title: ClassVar[str] = "an oscillator"
+    meant: ClassVar[Mapping[str, str]] = words.OF_OSCILLATOR_CONDITIONS
     force: Annotated[Quantity, Measured(None, "any")] = key(
         "Constant force, beside records with another. The same in all it tells nothing: it is left out with a note "
         "where there is no spring, and refused elsewhere.",

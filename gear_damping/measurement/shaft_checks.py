@@ -21,7 +21,7 @@ _TURN = 2 * np.pi  # rad in one turn of a shaft
 
 def check_shafts(record: Record) -> list[Finding | None]:
     """What is suspicious in the angle and the speed of the pinion."""
-    return [_turning(record), _speed(record)]
+    return [_turning(record), _speed(record), _backwards(record)]
 
 
 def tooth_ratio(
@@ -102,6 +102,23 @@ def _speed(record: Record) -> Finding | None:
         f"{stated * 30 / np.pi:.5g} rpm; check unit, direction and counts per revolution"
     )
     return Finding("speed_mismatch", message, channel="pinion_angle")
+
+
+def _backwards(record: Record) -> Finding | None:
+    """The note that the pinion turns against the torque that drives it."""
+    torque, known = record.channels.get("pinion_torque"), record.conditions.get("pinion_torque")
+    angle, speed = record.channels.get("pinion_angle"), _pinion_speed(record)
+    if angle is None or (torque is None and known is None) or np.ptp(angle.values) < _TURN:
+        return None
+    load = np.atleast_1d(known.value if torque is None else torque.values)
+    if np.any(load * speed >= 0):
+        return None
+    message = (
+        f"the pinion turns at {speed * 30 / np.pi:.5g} rpm under a torque of {np.mean(load):.3g} N m that drives it "
+        "the other way, and each shaft counts positive in its own sense of driving; write direction: -1 of encoders, "
+        "polarity: -1 of a pinion_angle, or the torque with the other sign"
+    )
+    return Finding("turns_backwards", message, channel="pinion_angle", severity="note")
 
 
 def other_side(record: Record, n_teeth: tuple[float, float]) -> Finding | None:

@@ -33,18 +33,23 @@ class Declared:
         own = [Argument(one.name, Argument.KEYWORD_ONLY, default=one.default) for one in known]
         cls.__signature__ = Signature(own)
 
-    def __init__(self, **given: Any) -> None:
+    def __init__(self, *by_place: Any, **given: Any) -> None:
         """Choose options and parameters by name.
 
         Args:
+            by_place: Values without a name, which are refused.
             given: Options, and parameters in SI: numbers, or sequences of numbers for a list.
 
         Raises:
-            InputError: everything that is wrong: unknown names, values out of range.
+            InputError: everything that is wrong: values without a name, unknown names, values out of range.
         """
         options = {option.name: option for option in self.options}
         declared = {parameter.name: parameter for parameter in self.parameters}
         known = [*options, *declared]
+        if by_place:
+            named = ", ".join(f"{name}=…" for name in (*declared, *options)) or "nothing"
+            rule, remedy = "takes its values by name", f"write {type(self).__name__}(…) with some of {named}"
+            raise InputError(Problem(self.name, rule, by_place[0], remedy))
         problems = [
             Problem(self._key(name), "no such parameter or option", remedy=self._remedy(name, known))
             for name in given

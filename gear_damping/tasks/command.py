@@ -49,6 +49,8 @@ def main(arguments: Sequence[str]) -> int:
     if problems:
         log_problems(InputError(problems))
         return WRONG_INPUT
+    for said in () if typed.shows else typed.overruled():
+        log.info(said)
     _folders.clear()
     callback.begun.clear()
     code = _sweep(typed) if typed.many and not typed.shows else _run(typed.flags, typed.overrides)

@@ -19,3 +19,8 @@ def test_a_list_is_offered_for_keys_that_take_one(key, is_offered):
     assert "several values" in problem.rule
     assert ("[a,b]" in problem.remedy) == is_offered
     assert "add --multirun (-m) for a sweep" in problem.remedy
+
+
+def test_a_key_that_is_given_again_with_another_value_is_said():
+    typed = read_command_line(["task=inspect", "seed=1", "measurement.path=a.csv", "measurement.path=b.csv", "seed=1"])
+    assert typed.overruled() == ["measurement.path is given 2 times: the last, b.csv, counts"]

@@ -590,3 +590,8 @@ def test_a_run_that_is_not_there_is_named(run, runs):
     """It was an IndexError of the tensor."""
     with pytest.raises(gd.InputError, match=r"run = .*must "):
         runs.plot(run=run)
+
+
+def test_values_without_a_name_are_answered_with_the_names():
+    with pytest.raises(gd.InputError, match=r"^- power_law_damping = 240: takes its values by name; .*coefficient=…"):
+        gd.PowerLawDamping(240, 2)

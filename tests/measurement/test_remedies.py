@@ -364,3 +364,21 @@ def test_a_bare_uncertainty_above_one_is_asked_whether_it_is_in_per_cent(bench, 
         loaded = bench.load()
         held = loaded.records[0].channels["transmission_error"] if place == "channel" else None
         assert (held or loaded.parameters["torque_gain"]).uncertainty == pytest.approx(value)
+
+
+def test_a_file_in_other_capitals_is_offered(tmp_path):
+    (tmp_path / "Run.csv").write_text("t,x\n")
+    (tmp_path / "measurement.yaml").write_text("system: oscillator\nrecords:\n- file: RUN.CSV\n")
+    with pytest.raises(InputError, match=r"did you mean 'Run\.csv'"):
+        load_measurement(tmp_path / "measurement.yaml")
+
+
+@pytest.mark.parametrize(("word", "said"), [("temperature", "as a comment"), ("load", "write force")])
+def test_words_of_conditions_of_an_oscillator_are_answered(tmp_path, word, said):
+    (tmp_path / "run.csv").write_text("t,x\n" + "".join(f"{k / 100},{k % 7}\n" for k in range(50)))
+    (tmp_path / "measurement.yaml").write_text(
+        f"system: oscillator\nrecords:\n- file: run.csv\n  conditions: {{{word}: 3 N}}\n"
+        "  channels: {time: {column: t, unit: s}, displacement: {column: x, unit: m}}\n"
+    )
+    with pytest.raises(InputError, match=said):
+        load_measurement(tmp_path / "measurement.yaml")

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from gear_damping.errors import InputError
+
 TURN = 2 * np.pi
 
 
@@ -199,3 +201,50 @@ def test_an_angular_acceleration_is_held_against_its_header_in_its_own_unit(benc
     found = [one.message for one in bench.load().records[0].findings if one.kind == "unit_conflict"]
     assert len(found) == conflicts
     assert all("which was used to read acceleration in rad/s^2;" in message for message in found)
+
+
+@pytest.mark.parametrize(("sign", "is_said"), [(1, False), (-1, True)])
+def test_a_pinion_that_turns_against_its_torque_is_a_note(bench, turned, sign, is_said):
+    record = _two_encoders(bench, sign * turned, sign * turned / 2)
+    assert [found.severity for found in record.findings if found.kind == "turns_backwards"] == ["note"] * is_said
+
+
+@pytest.mark.parametrize(("counts", "is_said"), [(360, False), (3600, True)])
+def test_a_header_in_degrees_contradicts_another_number_in_a_turn(bench, turned, counts, is_said):
+    _two_encoders(bench, turned, turned / 2)
+    angles = {"p [deg]": np.degrees(turned), "g [deg]": np.degrees(turned / 2)}
+    bench.columns = {"t": bench.columns["t"], **angles}
+    for shaft, column in (("pinion", "p"), ("gear", "g")):
+        bench.content["records"][0]["encoders"][shaft] = {"column": column, "counts_per_revolution": counts}
+    bench.write_csv()
+    found = [one.message for one in bench.load_as_it_is().records[0].findings if one.kind == "unit_conflict"]
+    assert len(found) == 2 * is_said
+    assert all("of which a turn has 360" in message for message in found)
+
+
+def test_a_tacho_that_never_rises_is_one_message(bench):
+    bench.columns |= {"tacho": np.full(400, 5.0)}
+    bench.record["encoders"] = {"tacho": {"column": "tacho", "pulses_per_revolution": 1}}
+    bench.write_csv()
+    with pytest.raises(InputError, match="0 pulse"):
+        bench.load_as_it_is()
+
+
+def test_an_encoder_that_is_not_declared_in_full_is_told_without_another_fault(bench, turned):
+    _two_encoders(bench, turned, turned / 2)
+    for shaft in ("pinion", "gear"):
+        del bench.content["records"][0]["encoders"][shaft]["counts_per_revolution"]
+    bench.content["records"][0]["channels"] = {"sampling_rate": "20 kHz"}
+    bench.write_csv()
+    with pytest.raises(InputError, match="360 of a column in degrees") as caught:
+        bench.load_as_it_is()
+    assert {problem.key.rpartition(".")[2] for problem in caught.value.problems} == {"counts_per_revolution"}
+
+
+def test_counts_of_an_angle_are_answered_with_the_counts_of_a_turn(bench):
+    bench.columns["theta1"] = np.arange(400.0) * 100
+    bench.record["channels"]["pinion_angle"] = {"column": "theta1", "unit": "counts", "gain": 4096}
+    bench.write_csv()
+    with pytest.raises(InputError, match="write unit: rev, and gain: the counts of one rev") as caught:
+        bench.load_as_it_is()
+    assert len(caught.value.problems) == 1

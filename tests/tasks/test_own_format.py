@@ -80,6 +80,8 @@ def test_a_damaged_file_ends_in_a_message(recorded):
         (HELD.format("'deflection', (4,), a.copy, 'm', 3.0"), r"ValueError: the clock of 'deflection' is \(first"),
         (HELD.format("'deflection', (4,), a.copy, 'm', (0, 0)"), r"rate in Hz\), and not \(0, 0\)"),
         (HELD.format("'deflection', (4,), lambda: a + 1j, 'm', (0, 9.)"), "'deflection' cannot be read .it is complex"),
+        (HELD.format("'deflection', (4,), a.copy, 5"), "ValueError: the unit of 'deflection' is a text or None"),
+        (HELD.format("'deflection', (4,), lambda: a.astype(str) + 'a', 'm', (0, 9.)"), "'deflection' cannot be read"),
         ("import nothing_of_the_kind", "cannot be loaded: line 1: ModuleNotFoundError"),
     ],
 )

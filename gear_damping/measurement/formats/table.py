@@ -207,6 +207,8 @@ class Held:
         """Say at once what a reader hands over wrongly."""
         if not isinstance(self.name, str):
             raise ValueError(f"the name of an array is a text, and not {self.name!r}")
+        if not isinstance(self.unit, str | None):
+            raise ValueError(f"the unit of '{self.name}' is a text or None, and not {self.unit!r}")
         if not callable(self.read):
             raise ValueError(f"read of '{self.name}' gives the array when it is called: write array.copy for it")
         if self.clock is None:
@@ -263,10 +265,10 @@ class ArrayTable(Table):
 
 
 def _real(array: NDArray) -> NDArray:
-    """Refuse what is complex, of which a copy as real numbers would lose a part."""
+    """Refuse what is complex, of which a copy as real numbers would lose a part, and what is no numbers."""
     if np.iscomplexobj(array):
         raise ValueError("it is complex, and a channel is real: write its real part, its size or its phase")
-    return array
+    return np.asarray(array, dtype=np.float64) if np.asarray(array).dtype.kind in "USO" else array
 
 
 def squeezed(shape: Sequence[int]) -> tuple[int, ...]:
