@@ -109,11 +109,15 @@ class FileClocks:
 
     def beside_stamps(self, rate: float, first: int, stop: int) -> tuple[Finding, ...]:
         """A note where the file states another rate than that of its stamps in the declared unit, in Hz."""
+        own = self.shared(rate)
         name, stated = self.stated(first, stop) or ("", rate)
+        said = f"'{name}' beside the table"
+        if own is not None and own[1] > _DOUBTFUL and abs(rate / own[1] - 1) > _AS_STATED:
+            said, stated = "the file itself, of the channels,", own[1]
         if abs(rate / stated - 1) <= _AS_STATED:
             return ()
         message = (
-            f"'{name}' beside the table says {stated:.6g} Hz and the time stamps {rate:.6g} Hz, which was used; "
+            f"{said} says {stated:.6g} Hz and the time stamps {rate:.6g} Hz, which was used; "
             "correct the unit of time where it is wrong, or give sampling_rate in its place where the stamps are"
         )
         return (Finding("rate_conflict", message, channel="time", severity="note"),)

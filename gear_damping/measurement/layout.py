@@ -90,7 +90,7 @@ class Tacho(Pulses):
     refused: ClassVar[c.Reasons] = Frozen({"index": ("the zero of its angle is its first pulse", "leave it out")})
     unit: Annotated[str, Text()] = key(
         "Unit of the column; where absent that of the file, else V, or s of `timestamps`. Half way between two levels "
-        "needs none.",
+        'needs none; of a WAV file a threshold counts in shares of full scale, `unit: "1"`.',
         "threshold; angle",
     )
     pulses_per_revolution: Annotated[float, Number(least=1)] = key(

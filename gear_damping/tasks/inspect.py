@@ -312,4 +312,5 @@ def _findings(record: Record) -> Iterator[str]:
 
 def _quantity(quantity: Any) -> str:
     known = f" ± {100 * quantity.uncertainty:g} %" if quantity.uncertainty else ""
-    return f"{quantity.value:.6g} {quantity.unit}{known}"
+    unit = "" if quantity.unit == "1" else f" {quantity.unit}"
+    return f"{quantity.value:.6g}{unit}{known}"

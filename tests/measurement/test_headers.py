@@ -419,3 +419,15 @@ def test_labels_may_stand_again_before_every_channel(tmp_path, label, begun):
 def test_a_number_in_brackets_is_no_unit(tmp_path):
     table = table_of(tmp_path, ["t (s);pos (5);load [12]", *rows(20)])
     assert [table.unit(k) for k in range(3)] == ["s", None, None]
+
+
+@pytest.mark.parametrize("more", ["", "Factor;2;3\n", "Sample rate;1000;1000\n"])
+def test_rows_with_a_label_above_the_first_column_are_names_and_units(tmp_path, more):
+    """The last row of such settings was a sample, and the row of units the names."""
+    rows = "".join(f"{k};{k % 7};{k % 5}\n" for k in range(50))
+    (tmp_path / "a.csv").write_text(f"Channel;1;2\nName;x;F\nUnit;mm;N\n{more}{rows}")
+    table = read_table(tmp_path / "a.csv")
+    assert table.names == ("", "x", "F")
+    assert [table.unit(k) for k in range(3)] == [None, "mm", "N"]
+    assert table.values(1)[0] == 0
+    assert table.lengths == (50, 50, 50)

@@ -174,3 +174,14 @@ def test_columns_are_found_by_what_people_call_them(tmp_path):
     assert read_table(tmp_path / "a.npy").index("1", "column") == 1
     (tmp_path / "a.csv").write_text("Weg [mm],Weg (2)\n1,2\n")
     assert read_table(tmp_path / "a.csv").index("Weg", "column") == 0
+
+
+def test_settings_that_are_wider_than_the_values_leave_a_sheet_its_names(tmp_path):
+    book = openpyxl.Workbook()
+    rows = [["Speed", 1200, "rpm"], ["x", "F"], ["mm", "N"], *([k / 7, k % 5] for k in range(150))]
+    for row in rows:
+        book.active.append(row)
+    book.save(tmp_path / "a.xlsx")
+    table = read_table(tmp_path / "a.xlsx")
+    assert table.names == ("x", "F")
+    assert [table.unit(k) for k in range(2)] == ["mm", "N"]

@@ -8,6 +8,7 @@ from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 from gear_damping.errors import InputError
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.formats.uff_file import rounded_rate
+from gear_damping.measurement.load import load_measurement
 from tests.measurement.stored import TIME, WAVE, shapes_of, values_of
 
 # UFF
@@ -171,3 +172,28 @@ def test_channels_of_two_rates_follow_the_clocks_of_the_file(bench):
     assert record.sampling_rate == 20000
     np.testing.assert_allclose(record.time, time[20:380])
     np.testing.assert_allclose(record.channels["pinion_torque"].values, 150 + np.sin(40 * record.time), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "said", [{"Sampling rate": 250.0}, {"Sampling rate": "250 Hz"}, {"SampleRate": 0.25, "SampleRate_unit": "kHz"}]
+)
+@pytest.mark.parametrize("owner", [RootObject, lambda properties: GroupObject("Rig", properties), None])
+def test_a_property_of_a_tdms_file_states_its_rate(tmp_path, said, owner):
+    above = [owner(said)] if owner else []
+    own = {} if owner else said
+    with TdmsWriter(tmp_path / "a.tdms") as writer:
+        writer.write_segment([*above, ChannelObject("Rig", "x", WAVE, own)])
+    table = read_table(tmp_path / "a.tdms")
+    assert table.sampling_rate is None
+    assert table.stated_rate[1] == pytest.approx(250.0)
+
+
+def test_an_abscissa_of_another_set_of_a_uff_file_contradicts_the_clock_of_a_channel(tmp_path):
+    _write_uff(tmp_path / "a.uff", _set58(WAVE, 500.0), _set58(WAVE, 1000.0))
+    for column, kinds in ((1, []), (2, ["rate_conflict"])):
+        (tmp_path / "m.yaml").write_text(
+            "system: oscillator\nrecords:\n- file: a.uff\n"
+            f"  channels: {{time: {{column: abscissa}}, displacement: {{column: {column}, unit: mm}}}}\n"
+        )
+        (record,) = load_measurement(tmp_path / "m.yaml").records
+        assert [one.kind for one in record.findings if one.kind == "rate_conflict"] == kinds

@@ -294,6 +294,7 @@ def test_what_the_steps_of_two_encoders_divide_by_is_told_as_no_step(tmp_path):
     said = dict(json.loads((tmp_path / "out" / "inspection.json").read_text())["records"][0]["channels"])
     assert "noise" in said["transmission_error"]
     assert "rounding" not in said["transmission_error"]
+    assert "n_teeth_pinion: 20\n" in (tmp_path / "out" / "inspection.txt").read_text()
 
 
 def test_of_a_casing_no_holding_out_is_promised(tmp_path):

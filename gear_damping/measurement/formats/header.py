@@ -145,13 +145,16 @@ def _of_recorder(rows: Sequence[Sequence[str]], width: int) -> Header | None:
 
 
 def _labelled(rows: Sequence[Sequence[str]], width: int) -> Header | None:
-    """The header whose rows say in a cell before the columns what they hold (`Name`, `Unit`); None of any other."""
-    found: dict[str, tuple[str, ...]] = {}
+    """The header whose rows say what they hold (`Name`, `Unit`) in a cell before the columns, else above the first."""
     end = _first_numbers(rows, width)
+    before, within = ({}, {})
     for row in rows[:end]:
-        for what, label in _LABELS.items():
-            if filled(row) == width + 1 and label.match(row[0].strip()):
-                found[what] = tuple(cell.strip() for cell in row[1 : width + 1])
+        label = next((what for what, one in _LABELS.items() if one.match(row[0].strip())), None)
+        if label and filled(row) == width + 1:
+            before[label] = tuple(cell.strip() for cell in row[1 : width + 1])
+        elif label and filled(row) == width and row[0] not in row[1:]:  # above a column of times or numbers of rows
+            within[label] = ("", *(cell.strip() for cell in row[1:width]))
+    found = before if "names" in before or len(within) < len(_LABELS) else within
     return Header(found["names"], found.get("units", ()), end, end) if "names" in found else None
 
 

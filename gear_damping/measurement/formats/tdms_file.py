@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.formats.moments import moment_since
-from gear_damping.measurement.formats.stated_rate import rate_of
+from gear_damping.measurement.formats.stated_rate import beside_their_units, rate_of, stated_rate
 from gear_damping.measurement.formats.table import (
     ArrayTable,
     Held,
@@ -50,10 +50,13 @@ def read(path: Path, max_bytes: int) -> Table:
                 held.append(_held(nptdms, path, name, channel, first))
             else:
                 left_out.append(f"{name} ({'empty' if not len(channel) else kind_of(dtype)})")
+        owners = [file, *file.groups(), *channels]
+        settings = [row for one in owners for row in beside_their_units(one.properties)]
     if not held and said.messages:
         rule = f"not a readable TDMS file ({said.messages[0]})"
         raise InputError(Problem("file", rule, str(path), "export it again"))
     table = ArrayTable(path, held, left_out)
+    table.stated_rate = stated_rate(settings)
     table.notes = tuple(f"{path.name}: {message}" for message in dict.fromkeys(said.messages))
     return table
 

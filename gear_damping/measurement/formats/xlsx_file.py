@@ -137,7 +137,8 @@ def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> _Shee
     texts = [["" if cell is None else str(cell).strip() for cell in row] for _, row in filled[:_HEAD]]
     if not texts:
         return _Sheet()
-    header = find_header(texts, max(sum(cell is not None for cell in row) for _, row in filled))
+    below = filled[_HEAD:] or filled  # settings above the names may be wider than the values
+    header = find_header(texts, max(sum(cell is not None for cell in row) for _, row in below))
     body, above, width = filled[header.first :], texts[: header.first], max(len(row) for _, row in filled)
     columns, notes, empty = [], list(left_above(above)), []
     said = units_of_names(above, [header.name(k) for k in range(width)])
