@@ -40,6 +40,15 @@ SOLVER = {
     "chunk": Number(1, 10_000_000, whole=True),
 }
 OTHER_GROUP = "choose the group that brings its own: simulator=oscillator family=none, or simulator=gear_pair"
+_LONG = "write simulator.n_samples, the duration times simulator.sampling_rate"
+_NOISE = "write simulator.sensor_noise.snr_db=30, or simulator.load_noise.snr_db=30"
+MEANT = {  # what people write in the place of a key, and no key is like it
+    **dict.fromkeys(("duration", "length", "time", "t_end", "seconds"), _LONG),
+    **dict.fromkeys(("fs", "rate", "sample_rate"), "write simulator.sampling_rate=40kHz"),
+    **dict.fromkeys(("dt", "time_step"), "write simulator.sampling_rate=40kHz, one over it"),
+    **dict.fromkeys(("noise", "snr", "snr_db"), _NOISE),
+    **dict.fromkeys(("runs", "batch"), "write simulator.n_runs"),
+}
 HOW = (*(name for name in PLAIN if name != "system"), "solver", "plugins")  # keys that say how to simulate
 SENSOR_NOISE, UNIT = "sensor_noise", "unit"  # an effect; the option of a rig that says what it is measured in
 
@@ -203,7 +212,7 @@ def _refuse_unknown(
         elif options is not None:
             ours = {*HOW, "system", *options}
             if key not in ours and split_suffix(key, numbers)[0] not in numbers:
-                remedy = without_group(full) or nearest(key, [*known, *numbers, *ours])
+                remedy = without_group(full) or MEANT.get(key) or nearest(key, [*known, *numbers, *ours])
                 remedy += (
                     "; an effect of your own needs simulator.plugins=[its file]" if isinstance(value, Mapping) else ""
                 )

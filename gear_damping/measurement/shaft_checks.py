@@ -108,7 +108,7 @@ def _backwards(record: Record) -> Finding | None:
     """The note that the pinion turns against the torque that drives it."""
     torque, known = record.channels.get("pinion_torque"), record.conditions.get("pinion_torque")
     angle, speed = record.channels.get("pinion_angle"), _pinion_speed(record)
-    if angle is None or (torque is None and known is None) or np.ptp(angle.values) < _TURN:
+    if (torque is None and known is None) or (angle is not None and np.ptp(angle.values) < _TURN):
         return None
     load = np.atleast_1d(known.value if torque is None else torque.values)
     if np.any(load * speed >= 0):
@@ -116,9 +116,9 @@ def _backwards(record: Record) -> Finding | None:
     message = (
         f"the pinion turns at {speed * 30 / np.pi:.5g} rpm under a torque of {np.mean(load):.3g} N m that drives it "
         "the other way, and each shaft counts positive in its own sense of driving; write direction: -1 of encoders, "
-        "polarity: -1 of a pinion_angle, or the torque with the other sign"
+        "polarity: -1 of a measured angle or speed, or a speed or torque under conditions with the other sign"
     )
-    return Finding("turns_backwards", message, channel="pinion_angle", severity="note")
+    return Finding("turns_backwards", message, channel="" if angle is None else angle.name, severity="note")
 
 
 def other_side(record: Record, n_teeth: tuple[float, float]) -> Finding | None:

@@ -144,6 +144,13 @@ FAULTS = {
         ["protocol.run = 3: acts in protocol=paper", "this is by_run", "choose protocol=paper"],
     ),
     "one_run_of_many": (["protocol=paper_many_runs", "protocol.run=3"], ["this is paper_many_runs"]),
+    "how_long_is_simulated": (
+        ["simulator.duration=2", "simulator.noise=1"],
+        [
+            "simulator.duration: no such effect or parameter; remedy: write simulator.n_samples",
+            "sensor_noise.snr_db=30",
+        ],
+    ),
     "family_of_a_gear_for_an_oscillator": (
         ["task=identify", "measurement=silverbox", "simulator=oscillator"],
         [

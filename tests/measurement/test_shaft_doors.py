@@ -248,3 +248,12 @@ def test_counts_of_an_angle_are_answered_with_the_counts_of_a_turn(bench):
     with pytest.raises(InputError, match="write unit: rev, and gain: the counts of one rev") as caught:
         bench.load_as_it_is()
     assert len(caught.value.problems) == 1
+
+
+@pytest.mark.parametrize(("speed", "is_said"), [("600 rpm", False), ("-600 rpm", True)])
+def test_a_stated_speed_against_the_torque_is_a_note(bench, speed, is_said):
+    bench.record["conditions"] = {"pinion_speed": speed, "pinion_torque": "60 Nm"}
+    for name in ("pinion_angle", "pinion_torque", "pinion_speed"):
+        bench.record["channels"].pop(name, None)
+    bench.write_csv()
+    assert ("turns_backwards" in [one.kind for one in bench.load_as_it_is().records[0].findings]) is is_said

@@ -40,7 +40,7 @@ from gear_damping.measurement.formats.timeseries_text import timeseries_table
 from gear_damping.measurement.formats.units_above import axis_units, listed_names, units_of_names
 from gear_damping.units import is_of_kind
 
-SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".log", ".prn", ".gz")
+SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".log", ".prn", ".trc", ".gz")
 
 _SEEN = 2**16  # bytes that hold its first lines
 _SAMPLE = 2000  # rows by which it is seen whether a column's numbers have signs between thousands

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from gear_damping.errors import InputError
 from gear_damping.measurement.formats.bracket_words import is_known, unit_said
 from gear_damping.measurement.formats.factors import factor_in
+from gear_damping.measurement.formats.marker_tables import of_markers
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written
 from gear_damping.measurement.formats.unit_words import as_ours
 from gear_damping.measurement.named_units import compound_at_end
@@ -123,6 +124,9 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
 
 def known_header(rows: Sequence[Sequence[str]], width: int) -> Header | None:
     """The header of a table whose rows say themselves what they are; None of any other."""
+    if (markers := of_markers(rows)) is not None:
+        names, units, first = markers
+        return Header(names, units, first, first - 2)
     return _of_logger(rows) or _of_recorder(rows, width) or _labelled(rows, width) or _in_pairs(rows, width)
 
 
