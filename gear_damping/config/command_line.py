@@ -56,11 +56,13 @@ class CommandLine:
         flags: What begins with a dash, each followed by its word.
         overrides: Overrides as Hydra shall see them.
         problems: What is wrong with the other words, which are left out.
+        overruled: What is said of keys that were given again with another value, of which the last one is kept.
     """
 
     flags: tuple[str, ...]
     overrides: tuple[str, ...]
     problems: tuple[Problem, ...]
+    overruled: tuple[str, ...] = ()
 
     @property
     def many(self) -> bool:
@@ -76,18 +78,6 @@ class CommandLine:
     def shows_what_runs(self) -> bool:
         """Whether it shows the configuration of the job as it will run, which is then to be right."""
         return self.shows and "--resolve" in self.flags
-
-    def overruled(self) -> list[str]:
-        """What is said of keys that are given again with another value, of which the last one counts."""
-        values: dict[str, list[str]] = {}
-        for override in self.overrides:
-            key, _, value = override.lstrip("+").partition("=")
-            values.setdefault(key, []).append(value)
-        return [
-            f"{key} is given {len(given)} times: the last, {given[-1]}, counts"
-            for key, given in values.items()
-            if len({*given}) > 1
-        ]
 
     def first_job(self) -> list[str]:
         """The overrides with the first value of each sweep."""
@@ -121,7 +111,22 @@ def read_command_line(arguments: Sequence[str]) -> CommandLine:
     if many and shown:
         rule, remedy = f"runs many jobs, and {shown} shows one", "leave it out, and give each key one value"
         problems.append(Problem(MANY[0], rule, remedy=remedy, source=SOURCE))
-    return CommandLine(tuple(flags), tuple(overrides), tuple(problems))
+    kept, overruled = _last_of_each(overrides)
+    return CommandLine(tuple(flags), kept, tuple(problems), overruled)
+
+
+def _last_of_each(overrides: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The overrides without those of a key that is given again behind them, and what is said where values differ."""
+    values: dict[str, list[str]] = {}
+    for override in overrides:
+        values.setdefault(override.partition("=")[0], []).append(override.partition("=")[2])
+    last = {key: max(k for k, one in enumerate(overrides) if one.partition("=")[0] == key) for key in values}
+    said = [
+        f"{key.lstrip('+')} is given {len(given)} times: the last, {given[-1]}, counts"
+        for key, given in values.items()
+        if len({*given}) > 1
+    ]
+    return tuple(one for k, one in enumerate(overrides) if k in last.values()), tuple(said)
 
 
 def _read_completion(arguments: Sequence[str]) -> CommandLine:

@@ -49,7 +49,7 @@ def main(arguments: Sequence[str]) -> int:
     if problems:
         log_problems(InputError(problems))
         return WRONG_INPUT
-    for said in () if typed.shows else typed.overruled():
+    for said in () if typed.shows else typed.overruled:
         log.info(said)
     _folders.clear()
     callback.begun.clear()

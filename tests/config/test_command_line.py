@@ -23,4 +23,10 @@ def test_a_list_is_offered_for_keys_that_take_one(key, is_offered):
 
 def test_a_key_that_is_given_again_with_another_value_is_said():
     typed = read_command_line(["task=inspect", "seed=1", "measurement.path=a.csv", "measurement.path=b.csv", "seed=1"])
-    assert typed.overruled() == ["measurement.path is given 2 times: the last, b.csv, counts"]
+    assert typed.overruled == ("measurement.path is given 2 times: the last, b.csv, counts",)
+    assert typed.overrides == ("++task=inspect", "++measurement.path=b.csv", "++seed=1")
+
+
+def test_a_swept_key_that_is_given_again_with_one_value_is_swept_no_more():
+    typed = read_command_line(["-m", "simulator.n_runs=2,3", "simulator.n_runs=4", "seed=1,2"])
+    assert typed.overrides == ("++simulator.n_runs=4", "++seed=1,2")
