@@ -15,7 +15,7 @@ from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import ExtraStates, LoadPath, Values
 
 TWIST, RATE = "shaft_torsion.twist", "shaft_torsion.twist_rate"
-SOFTNESS = (0.0012, 0.004, 0.012, 0.04, 0.12, 0.4)  # of the mesh as the shaft feels it
+SOFTNESS = (0.012, 0.04, 0.12, 0.4)  # of the mesh as the shaft feels it
 SOFTEST = 1e-4  # of it: what twists by a radian under its load is no shaft but a slow change of the torque
 INERTIAS = (2.9, 10.8)  # of both gears as the shaft feels them
 LIGHTEST = 0.1  # of them: what carries the torque weighs more than a hub, and a lighter one is any linear memory
