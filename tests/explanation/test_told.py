@@ -257,6 +257,7 @@ def test_what_takes_little_at_a_bound_beside_others_is_dropped(share, others, at
     """A friction as wide as half the motion, which takes a twenty-fifth of what was missing."""
     monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda *_: True)
     monkeypatch.setattr(Accepted, "runs_into_bound", lambda cause, _: at_bound and cause.name == "b")
+    monkeypatch.setattr("gear_damping.explanation.steps.told._of_no_figure", lambda state: None)
     bench, nominal, outcome, without = bench_leaving(0.3, as_good=False)
     accepted = (
         *(Accepted("a", made_up(False), 0.7, ()) for _ in range(others)),
@@ -266,3 +267,27 @@ def test_what_takes_little_at_a_bound_beside_others_is_dropped(share, others, at
     assert ("b" in {cause.name for cause in found.accepted}) is kept
     assert found.outcome is (outcome if kept else without)
     assert found.unsized == frozenset()
+
+
+@pytest.mark.parametrize(
+    ("left", "scatter", "others", "kept"),
+    [(0.5, 1.0, 1, True), (0.5, 1e4, 1, False), (0.001, 1e4, 1, True), (0.5, 1e4, 0, True)],
+)
+def test_a_law_of_no_figure_beside_others_gives_its_place_to_another_one(left, scatter, others, kept, monkeypatch):
+    """As no verdict would name it. Where nothing is left, records need not agree; one that is alone is suggested."""
+    covariances = scatter * torch.full((1, 1), 0.04, dtype=torch.float64)
+    monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda *_: True)
+    monkeypatch.setattr("gear_damping.explanation.steps.told.covariance_of", lambda *_: covariances / scatter)
+    monkeypatch.setattr("gear_damping.explanation.steps.told.wider_of_both", lambda *_: covariances)
+    monkeypatch.setattr(Accepted, "runs_into_bound", lambda *_: False)
+    bench, nominal, outcome, _ = bench_leaving(left, as_good=False)
+    bench.evidence.noise = NOISE
+    outcome.hypothesis = SimpleNamespace(effects=())
+    seen = outcome_of([FreeParameter("b.coefficient", 1.0)])
+    outcome.problem, outcome.fitted = seen.problem, seen.fitted
+    refit = made_up(False)
+    refit.score.candidate.names_of_phases = set()
+    accepted = tuple(Accepted(name, refit, 0.4, ()) for name in ["a", "b"][1 - others :])
+    found = told_of(State(bench, nominal, outcome, accepted))
+    assert ("b" in {cause.name for cause in found.accepted}) is kept
+    assert found.unsized == (frozenset() if kept else {"b"})

@@ -3,10 +3,12 @@
 from dataclasses import replace
 
 from gear_damping.explanation.evidence.excess import is_all
+from gear_damping.explanation.model.covariance import covariance_of, wider_of_both
 from gear_damping.explanation.model.gives_back import gives_back
 from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.model.own_phases import own_levels
 from gear_damping.explanation.state import Accepted, State
-from gear_damping.explanation.trials.told_size import is_told
+from gear_damping.explanation.trials.told_size import is_told, without_a_figure
 
 OF_ANY_SIZE = "lowers the cost, but its size is not told from none"
 BENDS = "takes little beside the others, and this at a bound of what it can be"
@@ -20,8 +22,10 @@ def told(state: State) -> State:
     there whatever its size. A large rest of its form, by which a size is judged, is no reason against it. That is no
     rescue for what is tried as a whole: of any stiffness and any inertia, the torsion of a shaft bends to what another
     one does. What gives back energy that it took does what nothing else can, though of a free motion the poles of two
-    masses tell four figures of five. Beside others, what takes little and has run into a bound of what it can be bends
-    to what these leave.
+    masses tell four figures of five.
+
+    Beside others, what takes little and has run into a bound of what it can be bends to what these leave. So does what
+    has not one figure that is known within itself, which no verdict would name: another law is sought in its place.
     """
     while (untold := _untold(state)) is not None:
         cause, outcome = untold
@@ -52,6 +56,8 @@ def _untold(state: State) -> tuple[Accepted, Outcome] | None:
         is_missed = is_one and (_explain_all(state) or _takes_most(state))
         if not is_missed or bench.is_as_good(outcome, state.outcome):
             found.append((cause, outcome))
+    if not found and (unknown := _of_no_figure(state)) is not None:
+        return unknown, bench.without(state.outcome, unknown.name)
     return min(found, key=lambda one: one[1].left_out_cost, default=None)
 
 
@@ -59,6 +65,23 @@ def _bends(state: State, cause: Accepted) -> bool:
     """Whether a cause beside others takes little, and this at a bound of what it can be."""
     is_small = len(state.accepted) > 1 and cause.share < state.bench.settings.least_share
     return is_small and cause.runs_into_bound(state.outcome)
+
+
+def _of_no_figure(state: State) -> Accepted | None:
+    """The last one of several causes of which no figure is known, by noise and, where something is left, by scatter.
+
+    Where a cause says that records differ, they need not agree.
+    """
+    outcome, evidence = state.outcome, state.bench.evidence
+    if len(state.accepted) < 2 or not outcome.is_finite:
+        return None
+    covariances = covariance_of(outcome, evidence)
+    if not (own_levels(outcome) or _explain_all(state)):
+        covariances = wider_of_both(covariances, outcome)
+    for cause in reversed(state.accepted):
+        if without_a_figure(outcome, [cause.name], covariances, evidence, cause.candidate.names_of_phases):
+            return cause
+    return None
 
 
 def _explain_all(state: State) -> bool:
