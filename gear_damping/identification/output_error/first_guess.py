@@ -23,15 +23,25 @@ def static_deflection(model: Model, given: Mapping[str, object], records: Sequen
     return torch.where(found.isfinite(), found, torch.zeros_like(found))
 
 
-def first_offset(segments: Sequence[FitRecord], channel: Observed, static: float) -> tuple[float, float]:
-    """A first guess of a channel's zero, and what counts as a step of order one."""
+def first_offset(
+    segments: Sequence[FitRecord], channel: Observed, static: float, parts: bool = False
+) -> tuple[float, float]:
+    """A first guess of a channel's zero, and what counts as a step of order one.
+
+    Args:
+        segments: Of one record.
+        channel: The channel.
+        static: Where its load holds it, in m or the rig's own unit.
+        parts: Whether the flanks may part: flights go far to one side, and the mean with them; the median stays near
+            where the load holds the teeth, as long as they touch for most of the time.
+    """
     values = torch.cat([_samples(record, channel.name) for record in segments])
     deviation = float(values.std().clamp(min=1e-300))
     if channel.derivatives:
         return float(values.mean()), deviation
     decays = channel.name == "displacement" and not segments[0].inputs
     rest = values[-max(2, round(TAIL * len(values))) :] if decays else values
-    return float(rest.mean()) - static, deviation
+    return float(rest.median() if parts else rest.mean()) - static, deviation
 
 
 def first_motion(record: FitRecord, offset: float, static: float, factor: float = 1.0) -> tuple[Tensor, Tensor]:

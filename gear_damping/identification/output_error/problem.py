@@ -32,6 +32,7 @@ from gear_damping.identification.output_error.unknowns import (
 )
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.traits import Trait
+from gear_damping.physics.terms import Contact
 from gear_damping.simulation.driven import Driven
 from gear_damping.simulation.prepare import Planned, prepare_kernels
 from gear_damping.simulation.runs import Runs, effect_state_units
@@ -133,12 +134,12 @@ class OutputErrorProblem:
 
     def _offsets(self) -> list[FreeParameter]:
         """Zeros of channels that are not known, one for each record, and how they change slowly."""
-        found = []
+        found, parts = [], any(isinstance(effect, Contact) for effect in self.model.effects)
         for first in first_segments(self.records):
             places = segments_of(self.records, first.record)
             its_records = [self.records[i] for i in places]
             for channel in (c for c in first.channels if c.offset):
-                start, scale = first_offset(its_records, channel, float(self.static[places[0]]))
+                start, scale = first_offset(its_records, channel, float(self.static[places[0]]), parts)
                 found.append(FreeParameter(_offset_of(first, channel.name), start, scale))
             for channel in (c for c in first.channels if c.slow):
                 size = channel.slow.deviation
