@@ -99,10 +99,13 @@ class EquationOfMotion:
             at.delta, at.delta_rate = at.delta - error, at.delta_rate - rate
 
     def _press(self, at: Kinematics, base: Values, terms: Mapping[str, Values]) -> None:
-        """Fill in the load of the torques and the load that reaches the mesh."""
-        load = self.system.load(at, base) + sum(e.load_force(at, terms[e.name]) for e in self._filling(Load))
+        """Fill in the load of the torques, what of it is unbalanced, and the load that reaches the mesh."""
+        forces = [(e.is_unbalanced, e.load_force(at, terms[e.name])) for e in self._filling(Load)]
+        load = self.system.load(at, base) + sum(force for _, force in forces)
+        at.unbalanced_load = sum(force for is_unbalanced, force in forces if is_unbalanced)
         for effect in self._filling(LoadFactor):
-            load = load * effect.load_factor(at, terms[effect.name])
+            factor = effect.load_factor(at, terms[effect.name])
+            load, at.unbalanced_load = load * factor, at.unbalanced_load * factor
         at.drive_load = load
         for effect in self._filling(LoadPath):
             load = effect.transmitted_load(at, terms[effect.name])

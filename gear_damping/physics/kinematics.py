@@ -73,5 +73,6 @@ class Kinematics:
     normal_force: Tensor | None = None
     mesh_force: Tensor | None = None
     drive_load: Tensor | None = None
+    unbalanced_load: Tensor | float = 0.0
     load: Tensor | None = None
     bearing_force: Tensor | float = 0.0

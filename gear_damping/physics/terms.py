@@ -143,7 +143,10 @@ class Load(Effect):
 
     @property
     def is_unbalanced(self) -> bool:
-        """Whether it comes of a torque on the pinion that none on the gear balances, so that both shafts speed up."""
+        """Whether it comes of a torque on the pinion that the gear's does not follow even where it is `balanced`.
+
+        Then both shafts speed up with it, as with every load where the gear's torque is `held`.
+        """
         return False
 
 

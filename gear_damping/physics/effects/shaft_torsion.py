@@ -137,10 +137,7 @@ class ShaftTorsion(ExtraStates, LoadPath):
 
     def initial(self, p: Values, base: Values) -> dict[str, Tensor]:
         """Twisted by the mean torque."""
-        torque = base["pinion_torque"]
-        if self.chosen["shaft"] == "gear":
-            torque = self._gear_torque(base["mean_load"], base["gear_torque"], p)
-        twist = torque / p["stiffness"]
+        twist = self._machine_torque(base["mean_load"], 0.0, base["gear_torque"], p) / p["stiffness"]
         return {"twist": twist, "twist_rate": torch.zeros_like(twist)}
 
     def transmitted_load(self, at: Kinematics, p: Values) -> Tensor:
@@ -157,12 +154,15 @@ class ShaftTorsion(ExtraStates, LoadPath):
     def _torques(self, at: Kinematics, p: Values) -> tuple[Tensor, Tensor]:
         """Torque on the machine, from the load of the torques, and torque of the shaft."""
         gear = at.inputs.get("gear_torque", p["gear_torque"])
-        if self.chosen["shaft"] == "gear":
-            motor = self._gear_torque(at.drive_load, gear, p)
-        else:
-            motor = (at.drive_load - p["per_gear_torque"] * gear) / p["per_pinion_torque"]
+        motor = self._machine_torque(at.drive_load, at.unbalanced_load, gear, p)
         return motor, p["stiffness"] * at.extra[TWIST] + p["damping"] * at.extra[RATE]
 
-    def _gear_torque(self, load: Tensor, held: Tensor, p: Values) -> Tensor:
-        """The torque of the brake: what balances the load, or what is held."""
-        return p["balanced"] * p["radius"] * load + (1 - p["balanced"]) * held
+    def _machine_torque(self, load: Tensor, unbalanced: Tensor | float, held: Tensor, p: Values) -> Tensor:
+        """The torque of the brake: what balances the load, or what is held; or that of the motor, which is the rest.
+
+        What is `unbalanced` in the load is the force of a torque on the pinion alone.
+        """
+        if self.chosen["shaft"] == "gear":
+            return p["balanced"] * p["radius"] * (load - unbalanced) + (1 - p["balanced"]) * held
+        both = (load - unbalanced - p["per_gear_torque"] * held) / p["per_pinion_torque"]
+        return both + unbalanced / p["load_per_torque"]
