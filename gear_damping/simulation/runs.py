@@ -31,6 +31,7 @@ class Runs:
         status: 0 for a fine run, 1 for one that diverged, (batch,).
         reference_velocity: Velocity amplitude that equivalent damping ratios belong to, m/s, (batch,).
         n_diverged: How many runs diverged, kept here or already left out.
+        held: Names of the inputs that stay at a sample's value until the next one.
     """
 
     model: Model
@@ -42,6 +43,7 @@ class Runs:
     status: Tensor
     reference_velocity: Tensor
     n_diverged: int = field(default=0)
+    held: frozenset[str] = frozenset()
 
     @property
     def good(self) -> Tensor:

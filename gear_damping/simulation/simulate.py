@@ -87,6 +87,7 @@ def simulate(
         status=torch.where(fine, FINE, DIVERGED),
         reference_velocity=reference_velocity(prepared.derived),
         n_diverged=int((~fine).sum()),
+        held=frozenset(driven.held),
     )
 
 

@@ -32,8 +32,9 @@ def _every_order(rig: Rig) -> tuple[Recipe, ...]:
     """Every form at every order.
 
     Through the transmission error a gear's torque that follows and one that stays differ by a factor only; a sensor on
-    a shaft sees how both shafts speed up.
+    a shaft sees how both shafts speed up. A gear's torque that is held stays in any case.
     """
+    is_held = rig.values.get("load_per_gear_torque", 0.0) != 0
     return tuple(
         Recipe(
             {strength: None},
@@ -44,14 +45,14 @@ def _every_order(rig: Rig) -> tuple[Recipe, ...]:
             shaft="pinion" if order == round(order) else "gear",
         )
         for strength, other, gear_torque in FORMS
-        if gear_torque == "follows" or rig.on_shafts
+        if gear_torque == "follows" or (rig.on_shafts and not is_held)
         for order in ripple_orders(rig)
     )
 
 
 def _alone(options: Mapping[str, Any], values: Mapping[str, float], base: Mapping[str, float]) -> str:
     """How large a ripple of the pinion's torque alone would have to be."""
-    if options["proportional"] or options["gear_torque"] == "stays":
+    if options["proportional"] or options["gear_torque"] == "stays" or base.get("load_per_gear_torque", 0.0) != 0:
         return ""
     factor = base["load_per_pinion_torque"] / _per_pinion_torque(base)
     return (
@@ -79,7 +80,9 @@ class TorqueRipple(Load, LoadFactor):
     )
     options: ClassVar = (
         Option("proportional", (False, True), False, "a share of the load instead of a torque"),
-        Option("gear_torque", ("follows", "stays"), "follows", "what the gear's torque does; stays: shafts speed up"),
+        Option(
+            "gear_torque", ("follows", "stays"), "follows", "what a balanced gear torque does; stays: shafts speed up"
+        ),
     )
     needs: ClassVar = (Trait.SHAFTS, Trait.TORQUE)
     cause: ClassVar = Cause(

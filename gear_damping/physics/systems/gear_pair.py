@@ -97,7 +97,7 @@ class GearPair(System):
             "natural_frequency": torch.sqrt(mean_stiffness / mass),
             "load_per_pinion_torque": per_pinion,
             "load_per_gear_torque": per_gear,
-            "mean_load": per_pinion * _true_torque(v["pinion_torque"], v) + per_gear * v["gear_torque"],
+            "mean_load": per_pinion * true_torque(v["pinion_torque"], v) + per_gear * v["gear_torque"],
         }
 
     def _base_radii(self, v: Values) -> tuple[Tensor, Tensor]:
@@ -119,7 +119,7 @@ class GearPair(System):
 
     @staticmethod
     def _load(inputs: Values, p: Values) -> Tensor:
-        pinion = _true_torque(inputs.get("pinion_torque", p["pinion_torque"]), p)
+        pinion = true_torque(inputs.get("pinion_torque", p["pinion_torque"]), p)
         gear = inputs.get("gear_torque", p["gear_torque"])
         return p["load_per_pinion_torque"] * pinion + p["load_per_gear_torque"] * gear
 
@@ -159,6 +159,6 @@ def turned(p: Values, time: Tensor) -> tuple[Tensor, Tensor]:
     return p["pinion_angle"] + time * (p["pinion_speed"] + time * (first / 2 + time * second / 6)), speed
 
 
-def _true_torque(read: Tensor, values: Values) -> Tensor:
+def true_torque(read: Tensor, values: Values) -> Tensor:
     """The torque on the pinion from the one that was read."""
     return values["torque_gain"] * read + values["torque_offset"]
