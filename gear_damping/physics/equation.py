@@ -91,6 +91,12 @@ class EquationOfMotion:
         self._deform(at, terms)
         return at.displacement - at.delta, at.velocity - at.delta_rate
 
+    def fill_in_loads(self, at: Kinematics, base: Values, terms: Mapping[str, Values]) -> None:
+        """Fill in the loads alone, and what they may depend on; `at.active_branch` says which branch holds."""
+        self._deform(at, terms)
+        self._touch(at, base, terms)
+        self._press(at, base, terms)
+
     def _deform(self, at: Kinematics, terms: Mapping[str, Values]) -> None:
         """Fill in delta = x - e and its rate."""
         at.delta, at.delta_rate = at.displacement, at.velocity
