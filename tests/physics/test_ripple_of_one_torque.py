@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+from gear_damping.physics.cause import Rig
 from gear_damping.physics.effects.torque_ripple import TorqueRipple
 
 J, R = (0.0978, 0.00767), (0.156, 0.0677)  # kg m^2 and m, of pinion and gear
@@ -33,3 +34,10 @@ def test_a_ripple_of_the_pinion_alone_that_does_the_same():
 @pytest.mark.parametrize("other", [{"proportional": True}, {"gear_torque": "stays"}])
 def test_nothing_is_said_of_a_share_or_of_what_is_the_pinion_s_already(other):
     assert TorqueRipple.cause.also(BOTH | other, VALUES, BASE) == ""
+
+
+def test_a_gear_torque_that_is_held_leaves_one_form_and_nothing_to_be_said():
+    base = BASE | {"load_per_gear_torque": 2.0}
+    rig = Rig("gear_pair", n_teeth_pinion=20, n_teeth_gear=40, on_shafts=True, values=base)
+    assert {recipe.options["gear_torque"] for recipe in TorqueRipple.cause.recipes_for(rig)} == {"follows"}
+    assert TorqueRipple.cause.also(BOTH, VALUES, base) == ""
