@@ -282,7 +282,7 @@ def test_what_takes_little_at_a_bound_beside_others_is_dropped(share, others, at
 def test_a_law_of_no_figure_beside_others_gives_its_place_to_another_one(
     left, scatter, share, others, kept, monkeypatch
 ):
-    """As no verdict would name it. Where nothing is left, records need not agree on a large one; what is alone stays."""
+    """As no verdict would name it. Where nothing is left, records need not agree on a large one. One alone stays."""
     covariances = scatter * torch.full((1, 1), 0.04, dtype=torch.float64)
     monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda *_: True)
     monkeypatch.setattr("gear_damping.explanation.steps.told.covariance_of", lambda *_: covariances / scatter)
