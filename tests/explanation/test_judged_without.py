@@ -144,14 +144,6 @@ def test_a_friction_may_be_the_form_of_a_larger_one(third, small):
     assert module._small(state) == small
 
 
-@pytest.mark.parametrize(("share", "small"), [(3e-4, ("b",)), (6e-4, ())])
-def test_what_stores_energy_takes_up_a_part_of_the_form_of_what_takes_it(share, small):
-    """A quadratic damping took all of it, and the flexibility of a bearing .01 % of that: two hundredths of two."""
-    state = searched_for((0.999, share)).state
-    state.accepted[0].effect = effect_class("power_law_damping")()
-    assert module._small(state) == small
-
-
 def test_a_sensor_that_is_off_by_little_may_be_a_form_of_any_law():
     state = searched_for((0.98, 0.013)).state
     state.accepted[0].effect = effect_class("hysteretic_damping")()

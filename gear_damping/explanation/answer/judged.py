@@ -76,8 +76,7 @@ def _small(state: State) -> tuple[str, ...]:
     """The causes beside larger ones that take no more than the form of these may be wrong by, where something is left.
 
     What takes energy out of the motion is no other form of what stores it, but of a larger one that takes it too; a
-    sensor that is off bends to either. Where there is no larger one of its kind, it may take up a part of that form, as
-    small a part of it as that is of the whole.
+    sensor that is off bends to either.
     """
     if state.left is None or not state.left.visible or not state.accepted:
         return ()
@@ -86,7 +85,7 @@ def _small(state: State) -> tuple[str, ...]:
     for place, cause in enumerate(others):
         larger = [one for one in others[:place] if one.effect.dissipative == cause.effect.dissipative]
         is_alike = isinstance(cause.effect, Sensor) or cause.effect.dissipative == largest.effect.dissipative
-        form = 1.0 if is_alike else larger[0].share if larger else share
+        form = 1.0 if is_alike else larger[0].share if larger else 0.0
         found += [cause.name] if cause.share < share * form else []
     return tuple(found)
 

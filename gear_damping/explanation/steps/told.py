@@ -68,18 +68,17 @@ def _bends(state: State, cause: Accepted) -> bool:
 
 
 def _of_no_figure(state: State) -> Accepted | None:
-    """The last one of several causes of which no figure is known, by noise and by the scatter between records.
+    """The last one of several causes of which no figure is known, by noise and, where something is left, by scatter.
 
-    Where causes leave nothing, records need not agree on the larger ones, nor where a cause says that records differ.
+    Where a cause says that records differ, they need not agree.
     """
     outcome, evidence = state.outcome, state.bench.evidence
     if len(state.accepted) < 2 or not outcome.is_finite:
         return None
-    of_noise, explain_all = covariance_of(outcome, evidence), _explain_all(state)
-    of_both = of_noise if own_levels(outcome) else wider_of_both(of_noise, outcome)
+    covariances = covariance_of(outcome, evidence)
+    if not (own_levels(outcome) or _explain_all(state)):
+        covariances = wider_of_both(covariances, outcome)
     for cause in reversed(state.accepted):
-        is_large = cause.share >= state.bench.settings.least_share
-        covariances = of_noise if explain_all and is_large else of_both
         if without_a_figure(outcome, [cause.name], covariances, evidence, cause.candidate.names_of_phases):
             return cause
     return None
