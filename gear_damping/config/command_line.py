@@ -120,7 +120,7 @@ def _last_of_each(overrides: Sequence[str]) -> tuple[tuple[str, ...], tuple[str,
     values: dict[str, list[str]] = {}
     for override in overrides:
         values.setdefault(override.partition("=")[0], []).append(override.partition("=")[2])
-    last = {key: max(k for k, one in enumerate(overrides) if one.partition("=")[0] == key) for key in values}
+    last = {override.partition("=")[0]: k for k, override in enumerate(overrides)}
     said = [
         f"{key.lstrip('+')} is given {len(given)} times: the last, {given[-1]}, counts"
         for key, given in values.items()

@@ -6,11 +6,14 @@ from dataclasses import dataclass, field, replace
 from gear_damping.explanation.evidence.excess import Excess, excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.model.candidates import Candidate, going_with
+from gear_damping.explanation.model.covariance import covariance_of, wider_of_both
 from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.model.own_phases import own_levels
 from gear_damping.explanation.trials.assess import Assessment
 from gear_damping.explanation.trials.bench import Bench
 from gear_damping.explanation.trials.refit import Refit, runs_into_bound
 from gear_damping.explanation.trials.score import Score
+from gear_damping.explanation.trials.told_size import without_a_figure
 from gear_damping.physics.terms import Effect
 
 FREELY_NAMED = 2  # causes whose size may be anybody's guess when they are accepted
@@ -128,6 +131,22 @@ class State:
     def is_at_bound(self, cause: Accepted) -> bool:
         """Whether a parameter of a cause has run into a bound, in its own full fit or beside the other causes."""
         return cause.runs_into_bound(cause.refit.outcome) or cause.runs_into_bound(self.outcome)
+
+    def of_no_figure(self, scatter: bool) -> tuple[str, ...]:
+        """Causes of which not one figure is known within itself, by the noise, or by the scatter between records too.
+
+        Where a cause says that records differ, they need not agree.
+        """
+        outcome, evidence = self.outcome, self.bench.evidence
+        if not self.accepted:
+            return ()
+        covariances = covariance_of(outcome, evidence)
+        if scatter and not own_levels(outcome):
+            covariances = wider_of_both(covariances, outcome)
+        causes = ((cause.name, cause.candidate.names_of_phases) for cause in self.accepted)
+        return tuple(
+            name for name, phases in causes if without_a_figure(outcome, [name], covariances, evidence, phases)
+        )
 
     @property
     def needs_known_size(self) -> bool:

@@ -90,6 +90,11 @@ class Model:
         return found
 
     @property
+    def flanks_may_part(self) -> bool:
+        """Whether there is a gap between them."""
+        return any(isinstance(effect, Contact) for effect in self.effects)
+
+    @property
     def damping_laws(self) -> tuple[DampingLaw, ...]:
         """The effects that state a damping ratio."""
         return tuple(effect for effect in self.effects if isinstance(effect, DampingLaw))

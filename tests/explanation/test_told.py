@@ -277,8 +277,8 @@ def test_a_law_of_no_figure_beside_others_gives_its_place_to_another_one(left, s
     """As no verdict would name it. Where nothing is left, records need not agree; what is alone stays."""
     covariances = scatter * torch.full((1, 1), 0.04, dtype=torch.float64)
     monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda *_: True)
-    monkeypatch.setattr("gear_damping.explanation.steps.told.covariance_of", lambda *_: covariances / scatter)
-    monkeypatch.setattr("gear_damping.explanation.steps.told.wider_of_both", lambda *_: covariances)
+    monkeypatch.setattr("gear_damping.explanation.state.covariance_of", lambda *_: covariances / scatter)
+    monkeypatch.setattr("gear_damping.explanation.state.wider_of_both", lambda *_: covariances)
     monkeypatch.setattr(Accepted, "runs_into_bound", lambda *_: False)
     bench, nominal, outcome, _ = bench_leaving(left, as_good=False)
     bench.evidence.noise = NOISE

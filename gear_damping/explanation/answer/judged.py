@@ -17,16 +17,13 @@ from gear_damping.explanation.answer.stand_in import (
 )
 from gear_damping.explanation.evidence.excess import excess
 from gear_damping.explanation.model.contradicted import contradicts_stated
-from gear_damping.explanation.model.covariance import covariance_of, wider_of_both
 from gear_damping.explanation.model.homogeneity import homogeneity
-from gear_damping.explanation.model.own_phases import own_levels
 from gear_damping.explanation.model.positive import positive
 from gear_damping.explanation.state import State
 from gear_damping.explanation.statistics.paired import Share, share_taken
 from gear_damping.explanation.steps.confirm import Confirmed, without
 from gear_damping.explanation.steps.judge import CONSISTENT, UNEXPLAINED, Judged, Known, verdict
 from gear_damping.explanation.trials.refit import block_samples
-from gear_damping.explanation.trials.told_size import without_a_figure
 from gear_damping.physics.terms import Sensor
 
 TOO = "`{}` would take part of what is left too, {}"
@@ -148,16 +145,8 @@ def _judged(found: Confirmed, notes: Sequence[str], is_short: bool) -> tuple[Jud
 
 def _of_no_figure(state: State) -> tuple[str, str]:
     """A cause of which not one size is known within itself, by the noise and by the scatter between records."""
-    outcome, evidence = state.outcome, state.bench.evidence
-    names = [cause.name for cause in state.accepted]
-    if not names:
-        return "", ""
-    phases = {name for cause in state.accepted for name in cause.candidate.names_of_phases}
-    covariances = covariance_of(outcome, evidence)
-    unknown = without_a_figure(outcome, names, covariances, evidence, phases)
-    if unknown or own_levels(outcome):  # where a cause says that records differ, they need not agree
-        return unknown, unknown
-    return "", without_a_figure(outcome, names, wider_of_both(covariances, outcome), evidence, phases)
+    unknown = next(iter(state.of_no_figure(scatter=False)), "")
+    return unknown, unknown or next(iter(state.of_no_figure(scatter=True)), "")
 
 
 def _not_random(state: State) -> float:

@@ -16,7 +16,6 @@ from gear_damping.identification.output_error.least_squares import TO_THE_END, E
 from gear_damping.identification.output_error.problem import OutputErrorProblem, error_amplification
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import in_segments, joined
-from gear_damping.physics.terms import Contact
 from gear_damping.simulation.solver_settings import Solver
 
 ITERATIONS_NEAR = 20  # to get near enough for the whole records
@@ -58,7 +57,7 @@ def fit_hypothesis(
         ends: When it stops before; what is enough, in noise variances.
         solver: Settings of the solver.
     """
-    parts = any(isinstance(effect, Contact) for effect in hypothesis.effects)
+    parts = hypothesis.model.flanks_may_part
     if parts and not evidence.segments and not initial.is_near:
         near = _fit_in_segments(hypothesis, evidence, initial.starts, rounds.kept, ends.enough, solver)
         if near.error_amplification > evidence.settings.most_growth:

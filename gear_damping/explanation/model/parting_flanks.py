@@ -31,7 +31,6 @@ from gear_damping.identification.output_error.least_squares import NONE, Rounds
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.effects.backlash import GAPS, Backlash
 from gear_damping.physics.systems.traits import Trait
-from gear_damping.physics.terms import Contact
 from gear_damping.simulation.solver_settings import Solver
 
 GAP = f"{Backlash.name}.gap"
@@ -161,7 +160,7 @@ def with_parting_flanks(evidence: Evidence, harmonics: int, solver: Solver | Non
         solver: Settings of the solver.
     """
     first = first_gear_pair(evidence)
-    if any(isinstance(effect, Contact) for effect in first.effects):
+    if first.model.flanks_may_part:
         return None
     module = first.given.get("module") or next(p.default for p in first.system.parameters if p.name == "module")
     gap = GAPS[-1] * float(module)

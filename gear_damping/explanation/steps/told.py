@@ -3,12 +3,10 @@
 from dataclasses import replace
 
 from gear_damping.explanation.evidence.excess import is_all
-from gear_damping.explanation.model.covariance import covariance_of, wider_of_both
 from gear_damping.explanation.model.gives_back import gives_back
 from gear_damping.explanation.model.hypothesis import Outcome
-from gear_damping.explanation.model.own_phases import own_levels
 from gear_damping.explanation.state import Accepted, State
-from gear_damping.explanation.trials.told_size import is_told, without_a_figure
+from gear_damping.explanation.trials.told_size import is_told
 
 OF_ANY_SIZE = "lowers the cost, but its size is not told from none"
 BENDS = "takes little beside the others, and this at a bound of what it can be"
@@ -68,20 +66,11 @@ def _bends(state: State, cause: Accepted) -> bool:
 
 
 def _of_no_figure(state: State) -> Accepted | None:
-    """The last one of several causes of which no figure is known, by noise and, where something is left, by scatter.
-
-    Where a cause says that records differ, they need not agree.
-    """
-    outcome, evidence = state.outcome, state.bench.evidence
-    if len(state.accepted) < 2 or not outcome.is_finite:
+    """The last one of several causes of which no figure is known; where they leave nothing, records need not agree."""
+    if len(state.accepted) < 2 or not state.outcome.is_finite:
         return None
-    covariances = covariance_of(outcome, evidence)
-    if not (own_levels(outcome) or _explain_all(state)):
-        covariances = wider_of_both(covariances, outcome)
-    for cause in reversed(state.accepted):
-        if without_a_figure(outcome, [cause.name], covariances, evidence, cause.candidate.names_of_phases):
-            return cause
-    return None
+    names = state.of_no_figure(scatter=not _explain_all(state))
+    return next((cause for cause in reversed(state.accepted) if cause.name in names), None)
 
 
 def _explain_all(state: State) -> bool:

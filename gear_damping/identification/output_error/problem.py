@@ -32,7 +32,6 @@ from gear_damping.identification.output_error.unknowns import (
 )
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.traits import Trait
-from gear_damping.physics.terms import Contact
 from gear_damping.simulation.driven import Driven
 from gear_damping.simulation.prepare import Planned, prepare_kernels
 from gear_damping.simulation.runs import Runs, effect_state_units
@@ -134,7 +133,7 @@ class OutputErrorProblem:
 
     def _offsets(self) -> list[FreeParameter]:
         """Zeros of channels that are not known, one for each record, and how they change slowly."""
-        found, parts = [], any(isinstance(effect, Contact) for effect in self.model.effects)
+        found, parts = [], self.model.flanks_may_part
         for first in first_segments(self.records):
             places = segments_of(self.records, first.record)
             its_records = [self.records[i] for i in places]
