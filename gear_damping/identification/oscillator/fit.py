@@ -169,14 +169,17 @@ def _fitted(
     """The best fit from several starts, over growing stretches of the records.
 
     Beside the peak per unit of force the response has one of its own. Where the force is short, as a stroke, that may
-    be the better guess; and a stretch that ends in the stroke leads astray, so that it is tried over all at once.
+    be the better guess; and a stretch that ends in the stroke leads astray, so that it is tried over all at once. So
+    does one in which nothing moves yet, as of a motor on a ramp of its voltage, to a damping of none.
     """
     found = fit(problem, _starts(problem, spring), Rounds(horizons=_horizons(problem, scale), report=report))
-    found = _that_dies(found, problem) if spring else found
+    if not spring:
+        return min(found, fit(problem, _starts(problem, spring)), key=lambda one: one.cost)
+    found = _that_dies(found, problem)
     rate = _first_rate(problem)
     own = 2 * pi * first_frequency(problem.records[0], driven=False) / rate if rate > 0 else 0.0
     is_new = not min(FIRST_SHIFTS) <= own <= max(FIRST_SHIFTS) or is_stroke(problem.records[0])
-    if not spring or own <= 0 or not is_new:
+    if own <= 0 or not is_new:
         return found
     other = fit(problem, _starts(problem, spring, (own,)))
     return min(found, other, key=lambda one: one.cost)
