@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from gear_damping.measurement.checks import STRUCK, TURNING, check_channel
 from gear_damping.measurement.encoders import FROM_ENCODERS
 from gear_damping.measurement.irregular_stamps import written_on_change
+from gear_damping.measurement.lost_samples import lost_samples
 from gear_damping.measurement.record import Channel, Finding, Record
 from gear_damping.measurement.shaft_checks import LARGEST_TRANSMISSION_ERROR, check_shafts
 from gear_damping.measurement.vocabulary import INPUTS
@@ -154,6 +155,7 @@ def check_record(record: Record) -> tuple[Finding, ...]:
     if not any(finding.severity == "data_problem" and finding.channel == "time" for finding in record.findings):
         found.append(stamps_against_values(record))
     found += [check(channel) for channel in record.channels.values() for check in (_drowned, _straight)]
+    found += [lost_samples(channel, record.time) for channel in record.channels.values()]
     found += [_magnitude(record), _rests_elsewhere(record), _oversampled(record)]
     found += [*check_shafts(record), *not_compared(record)]
     found += [*_beyond_the_band(record), *_inputs_beyond(record)]
