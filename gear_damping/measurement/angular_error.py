@@ -52,9 +52,10 @@ def along_the_line(plan: "ChannelPlan", parameters: Mapping[str, Quantity]) -> "
     known = [parameters.get(name) for name in (GEOMETRY[sensor.pop("shaft")], *NEEDED)]
     radius = base_radius(*(one.value for one in known)) if all(known) else 1.0
     angle = parse_unit(plan.unit)
-    sensor["gain"] *= parse_unit(LENGTH).factor / (radius * angle.factor)  # the declared unit in one micrometre
+    lever = parse_unit(LENGTH).factor / (radius * angle.factor)  # the declared unit in one micrometre
+    sensor["gain"] *= lever
     limits = {name: _length(quantity, radius, angle) for name, quantity in plan.limits.items()}
-    return replace(plan, unit=LENGTH, sensor=sensor, limits=limits, stated_unit=plan.unit)
+    return replace(plan, unit=LENGTH, sensor=sensor, limits=limits, stated_unit=plan.unit, lever=lever)
 
 
 def _length(quantity: Quantity, radius: float, angle: Unit) -> Quantity:

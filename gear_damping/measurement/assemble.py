@@ -1,5 +1,6 @@
 """From raw values to a record: units, sign, unwrapped angles, one time base, checks."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -93,12 +94,8 @@ class Assembler:
         }
         factor = conversion.factor
         if record.table.full_scale is not None:
-            if "range" in limits and plan.sensor["gain"] != 1:
-                rule = "stands beside range, which says already what ±1 of a WAV file is"
-                remedy = "leave one of the two out"
-                raise InputError(Problem(f"{plan.key}.gain", rule, plan.sensor["gain"], remedy, self.source))
-            factor = limits.get("range", factor)
-            notes.append(f"{plan.name}: full scale is taken as {factor:.6g} {conversion.unit}")
+            factor = self._of_full_scale(plan, limits, factor)
+            notes.append(f"{plan.name}: full scale is taken as {factor / plan.sensor['gain']:.6g} {conversion.unit}")
         values = raw.values * (factor * plan.sensor["polarity"] / plan.sensor["gain"])
         turn = turn_in(conversion.unit)
         is_turned = plan.name == "pinion_angle" or (bool(turn) and begins_again(values, turn))
@@ -126,6 +123,16 @@ class Assembler:
         return Channel(
             plan.name, values, conversion.unit, raw.unit, conversion.factor, rounding=rounding, **limits, **sensor
         )
+
+    def _of_full_scale(self, plan: ChannelPlan, limits: Mapping[str, float], factor: float) -> float:
+        """What ±1 of a WAV file is before the gain: the range, or one of the unit."""
+        if "range" not in limits:
+            return factor
+        if plan.sensor["gain"] != plan.lever:
+            rule = "stands beside range, which says already what ±1 of a WAV file is"
+            stated = plan.sensor["gain"] / plan.lever
+            raise InputError(Problem(f"{plan.key}.gain", rule, stated, "leave one of the two out", self.source))
+        return limits["range"] * plan.lever
 
     def _conversion(self, plan: ChannelPlan, unit: str, key: str, said: str = "") -> Conversion:
         return self.units.conversion(plan.name, unit, key, self.source, plan.shaft_radius, said)

@@ -37,8 +37,9 @@ class TimePlan:
 class ChannelPlan:
     """A declared channel; `unit` None asks the file, `limits` are range and noise as declared.
 
-    `is_scaled` says that its gain is stated, be it 1; `stated_unit` is the angle that `unit` is the length of;
-    `geometry` makes a length of an angle of a shaft whose unit the file says.
+    `is_scaled` says that its gain is stated, be it 1; `stated_unit` is the angle that `unit` is the length of,
+    and `lever` what the gain was multiplied by on that way; `geometry` makes a length of an angle of a shaft whose
+    unit the file says.
     """
 
     name: str
@@ -50,6 +51,7 @@ class ChannelPlan:
     timing: TimePlan | None
     is_scaled: bool = False
     stated_unit: str | None = None
+    lever: float = 1.0
     geometry: Mapping[str, Quantity] | None = None
 
     @property

@@ -115,8 +115,9 @@ def _backwards(record: Record) -> Finding | None:
         return None
     message = (
         f"the pinion turns at {speed * 30 / np.pi:.5g} rpm under a torque of {np.mean(load):.3g} N m that drives it "
-        "the other way, and each shaft counts positive in its own sense of driving; write direction: -1 of encoders, "
-        "polarity: -1 of a measured angle or speed, or a speed or torque under conditions with the other sign"
+        "the other way, and each shaft counts positive in its own sense of driving; where the gear drives it so, "
+        "nothing is to be done; else change the direction of encoders (direction: -1), the polarity of a measured "
+        "angle or speed (polarity: -1), or the sign of a speed or torque under conditions"
     )
     return Finding("turns_backwards", message, channel="" if angle is None else angle.name, severity="note")
 

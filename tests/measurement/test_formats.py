@@ -292,6 +292,23 @@ def test_a_wav_record_brings_its_rate_and_is_scaled_by_the_range(bench):
     assert conflict.severity == "data_problem"
 
 
+@pytest.mark.parametrize("said", [{"range": "1000 urad"}, {"gain": 0.001}])
+def test_an_angle_of_a_shaft_is_scaled_by_what_full_scale_is_said_to_be(bench, said):
+    """A thousandth of full scale per microradian, by either word, along the line of action of the shaft."""
+    samples = (3000 * np.sin(np.arange(2000) / 9)).astype(np.int16)
+    wavfile.write(bench.folder / "a.wav", 12800, samples)
+    error = {"column": 0, "unit": "urad", "shaft": "gear", "datum": "arbitrary", **said}
+    bench.content["parameters"] |= {"n_teeth_pinion": 20, "n_teeth_gear": 40, "pressure_angle": "20 deg"}
+    record = {"file": "a.wav", "channels": {"transmission_error": error}}
+    record["conditions"] = {"pinion_speed": "1800 rpm", "pinion_torque": "40 N*m"}
+    bench.content["records"] = [record]
+    loaded = bench.load_as_it_is().records[0]
+    radius = 40 * 3e-3 / 2 * np.cos(np.deg2rad(20))
+    expected = samples / 32768 * 1e-3 * radius
+    np.testing.assert_allclose(loaded.channels["transmission_error"].values, expected, rtol=1e-12)
+    assert any(f"full scale is taken as {1e-3 * radius:.6g} m" in note for note in loaded.notes)
+
+
 def test_settings_above_a_table_without_a_header_are_left_out(tmp_path):
     path = tmp_path / "swing.lvm"
     values = -90 + np.arange(50) / 8
