@@ -128,9 +128,21 @@ class State:
         """A cause and the others that need it, which go where it goes."""
         return going_with(name, self.outcome.hypothesis.effects)
 
+    def passed_without(self, name: str) -> Outcome | None:
+        """The best model that has all the causes but one, and what needs it, and was fitted on the way; if any was."""
+        kept = self.names - self.going_with(name)
+        fits = [fit.outcome for fit in (*self.first_fits, *self.rejected)]
+        ways = [outcome for outcome in (*fits, *(one.outcome for one in self.passed)) if outcome.is_finite]
+        alike = [outcome for outcome in ways if set(outcome.hypothesis.causes) == kept]
+        return min(alike, key=lambda outcome: outcome.fitted.cost, default=None)
+
     def is_at_bound(self, cause: Accepted) -> bool:
-        """Whether a parameter of a cause has run into a bound, in its own full fit or beside the other causes."""
-        return cause.runs_into_bound(cause.refit.outcome) or cause.runs_into_bound(self.outcome)
+        """Whether a parameter of a cause has run into a bound: alone in its own full fit too, or beside the others.
+
+        While another cause is missing a law bends to what that leaves, and it is no less there beside it.
+        """
+        alone = len(self.accepted) <= 1 and cause.runs_into_bound(cause.refit.outcome)
+        return alone or cause.runs_into_bound(self.outcome)
 
     def of_no_figure(self, scatter: bool) -> tuple[str, ...]:
         """Causes of which not one figure is known within itself, by the noise, or by the scatter between records too.

@@ -111,6 +111,8 @@ def test_a_cause_may_run_into_its_bound_beside_the_others_only(alone, beside, do
     other = SimpleNamespace(candidate=SimpleNamespace(name="other", resting=()))
     first = Accepted("law", Refit(other, outcome(alone), 1.0, 9.0, 9.0, is_seen_in_fit=True), 0.5, (), score)
     assert State(None, None, outcome(beside)).is_at_bound(first) is doubted  # of a pair, by its own name
+    both = State(None, None, outcome(beside), accepted=(cause, first))  # what bent it while the other was missing: none
+    assert both.is_at_bound(cause) is (beside != 2.0)
 
 
 @pytest.mark.parametrize(

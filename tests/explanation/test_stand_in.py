@@ -117,6 +117,22 @@ def test_what_there_is_no_time_to_ask_is_noted(forced):
     assert is_untold(late)
 
 
+def test_where_the_time_is_over_a_model_that_the_search_fitted_on_its_way_is_asked(forced):
+    """Of two causes the one alone was fitted before the other was added: no further fit is needed to tell."""
+    state, budget = forced, Budget(1.0)
+    budget.clock = lambda: math.inf
+    name, other = state.accepted[0].name, "coulomb_friction"
+    known = replace(state.nominal, hypothesis=replace(state.nominal.hypothesis, causes=(other,)))
+    late = replace(
+        state,
+        bench=SimpleNamespace(**vars(state.bench) | {"budget": budget}),
+        accepted=(*state.accepted, replace(state.accepted[0], name=other)),
+        first_fits=(SimpleNamespace(outcome=known),),
+    )
+    assert [one.cause for one in stand_ins(late)] == [name]
+    assert budget.not_tried == [f"whether {other} stands in for something else"]
+
+
 def test_where_nothing_is_left_nobody_asks(forced):
     seen = SimpleNamespace(visible=False)
     assert not list(stand_ins(State(forced.bench, forced.nominal, forced.outcome, forced.accepted, left=seen)))

@@ -184,11 +184,8 @@ def _line_in_segments(nominal: Outcome, evidence: Evidence) -> str:
 
 def _stand_in(cause: Accepted, state: State) -> StandIn | None:
     """What a cause stands in for; of several families the one that takes most."""
-    alone, bench = len(state.accepted) == 1, state.bench
-    if not alone and bench.budget.refuses(_asked_of(cause), is_last=True):
-        return None
-    without = state.nominal if alone else bench.without(state.outcome, cause.name)
-    if not without.is_finite:
+    bench, without = state.bench, _without(cause, state)
+    if without is None or not without.is_finite:
         return None
     project, left = projected(without)
     added = (without.fitted.prediction.residual - state.outcome.fitted.prediction.residual)[0].reshape(-1, 1)
@@ -215,6 +212,16 @@ def _stand_in(cause: Accepted, state: State) -> StandIn | None:
         if why:
             found.append(StandIn(cause.name, alternative.name, takes, cause_takes, why))
     return max(found, key=lambda one: one.takes, default=None)
+
+
+def _without(cause: Accepted, state: State) -> Outcome | None:
+    """The model without a cause; where there is no time to fit it, as the search had it on its way, if it had."""
+    if len(state.accepted) == 1:
+        return state.nominal
+    budget, known = state.bench.budget, state.passed_without(cause.name)
+    if known is not None and budget.all_spent:
+        return known
+    return None if budget.refuses(_asked_of(cause), is_last=True) else state.bench.without(state.outcome, cause.name)
 
 
 def beyond_chance(takes: float, numbers: int, blocks: float) -> float:

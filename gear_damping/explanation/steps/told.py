@@ -30,7 +30,7 @@ def told(state: State) -> State:
         bends = _bends(state, cause)
         state.bench.log(f"{cause.name} {BENDS if bends else OF_ANY_SIZE}")
         kept = tuple(other for other in state.accepted if other is not cause)
-        rejected, unsized = (cause.refit, *state.rejected), state.unsized | (set() if bends else {cause.name})
+        rejected, unsized = (cause.refit, *state.rejected), state.unsized | {cause.name}
         state = replace(state, outcome=outcome, accepted=kept, rejected=rejected, unsized=unsized)
     return state
 

@@ -330,8 +330,8 @@ def has_many(score: Score) -> bool:
 
 
 def smallest(fits: Sequence[Refit]) -> Refit:
-    """The fit with the fewest parameters; of several the one that leaves least."""
-    return min(fits, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.left_out_cost))
+    """The fit with the fewest parameters, a figure of each record last; of several the one that leaves least."""
+    return min(fits, key=lambda fit: (fit.differs, len(fit.outcome.hypothesis.free), fit.outcome.left_out_cost))
 
 
 def _one_a_size(fits: Sequence[Refit], best: Refit) -> list[Refit]:
