@@ -1,7 +1,8 @@
 """What `explain` says of real measured records whose answer is known from their authors: `make real`.
 
 The records are read from `GEAR_DAMPING_DATA` (default `../shared/data`); none of them is in this repository. Answers
-are kept as they come, so that the same command goes on; writes `docs/real_records.md` and its figure.
+are kept as they come, so that the same command goes on, as long as the code that explains is the same; writes
+`docs/real_records.md` and its figure.
 """
 
 import argparse
@@ -11,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from benchmarks.explaining import engine
 from benchmarks.marked import put
 from gear_damping.config.locate import conf_folder
 from gear_damping.interface.explained import explain
@@ -101,6 +103,12 @@ def write(answers: dict[str, dict[str, Any]]) -> None:
     save(misfit_figure({name: answer["misfit"] for name, answer in answers.items()}), PICTURE)
 
 
+def of_this_engine(kept: Path) -> dict[str, dict[str, Any]]:
+    """Answers that were kept, where the code that explains is that which gave them; none of any other."""
+    noted = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
+    return noted["answers"] if noted.get("engine") == engine() else {}
+
+
 def main() -> None:
     """Ask what has not been asked, and write."""
     parser = argparse.ArgumentParser(prog="make real", description=__doc__)
@@ -109,11 +117,12 @@ def main() -> None:
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     kept = options.out / "answers.json"
-    answers = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() and not options.redo else {}
+    answers = {} if options.redo else of_this_engine(kept)
     for name, filed in FILED.items():
         if name not in answers:
             answers[name] = answered(filed)
-            kept.write_text(json.dumps(answers, indent=1, allow_nan=False), encoding="utf-8")
+            noted = {"engine": engine(), "answers": answers}
+            kept.write_text(json.dumps(noted, indent=1, allow_nan=False), encoding="utf-8")
         print(f"{name}: {answers[name]['verdict']}, {judged(filed, answers[name])}", flush=True)
         write({one: answers[one] for one in FILED if one in answers})  # stopped here, the page has what was asked
 

@@ -6,7 +6,9 @@ import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from ..blind.run import answer_all, engine, named, noted
+from benchmarks.explaining import engine
+
+from ..blind.run import answer_all, named, noted
 from .work import Case, answer
 
 NOTES = "cases.jsonl"
