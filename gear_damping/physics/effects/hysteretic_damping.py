@@ -15,7 +15,8 @@ from gear_damping.physics.terms import DampingForce, ExtraStates, Values
 
 YIELDS = (0.05, 0.2, 0.6)  # amplitudes of the motion
 PRELOADED = (0.2,)  # in natural units: a loaded mesh moves about its deflection
-EXPONENTS = (0.5, 4.0)  # of the sharpness that is fitted
+SOFTEST = 0.3  # least sharpness: half of the force is yielded already at a tenth of z_y (0.1^0.3 = 0.5)
+EXPONENTS = (SOFTEST, 4.0)  # of the sharpness that is fitted
 LATEST = 10.0  # amplitudes of the motion: what yields later is a spring, from wherever each stretch of a record begins
 EARLY = 0.1  # of the amplitude: the loss of a cycle is within a tenth that of dry friction, 4 F (A - z_y) of 4 F A
 
@@ -62,7 +63,7 @@ class HystereticDamping(ExtraStates, DampingForce):
     parameters: ClassVar = (
         Parameter("share", "1", 0.02, "beta, share of the mean stiffness", 0, 1000),
         Parameter("yield_deflection", "m", 2e-6, "z_y, largest hysteretic deflection", 1e-12, 1e9),
-        Parameter("exponent", "1", 1.0, "n, sharpness of the yielding", 0.5, 10),
+        Parameter("exponent", "1", 1.0, "n, sharpness of the yielding", SOFTEST, 10),
     )
     states: ClassVar = {"deflection": "m"}
     dissipative = True
