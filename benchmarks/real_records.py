@@ -103,10 +103,10 @@ def write(answers: dict[str, dict[str, Any]]) -> None:
     save(misfit_figure({name: answer["misfit"] for name, answer in answers.items()}), PICTURE)
 
 
-def of_this_engine(kept: Path) -> dict[str, dict[str, Any]]:
+def of_this_engine(kept: Path, version: str) -> dict[str, dict[str, Any]]:
     """Answers that were kept, where the code that explains is that which gave them; none of any other."""
     noted = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
-    return noted["answers"] if noted.get("engine") == engine() else {}
+    return noted["answers"] if noted.get("engine") == version else {}
 
 
 def main() -> None:
@@ -117,11 +117,12 @@ def main() -> None:
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     kept = options.out / "answers.json"
-    answers = {} if options.redo else of_this_engine(kept)
+    version = engine()
+    answers = {} if options.redo else of_this_engine(kept, version)
     for name, filed in FILED.items():
         if name not in answers:
             answers[name] = answered(filed)
-            noted = {"engine": engine(), "answers": answers}
+            noted = {"engine": version, "answers": answers}
             kept.write_text(json.dumps(noted, indent=1, allow_nan=False), encoding="utf-8")
         print(f"{name}: {answers[name]['verdict']}, {judged(filed, answers[name])}", flush=True)
         write({one: answers[one] for one in FILED if one in answers})  # stopped here, the page has what was asked

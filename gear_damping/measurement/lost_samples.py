@@ -25,14 +25,14 @@ def lost_samples(channel: Channel, time: NDArray[np.float64]) -> Finding | None:
     """A finding where a measured place leaps ahead again and again between stamps that are even."""
     if channel.name not in CONTINUOUS or channel.values.size < _FEWEST_SEEN:
         return None
-    places, leaps = _leaps(channel.values)
+    places, leaps, fast = _leaps(channel.values)
     steps = np.diff(time)
     even = steps[places] < (1 + _SAMPLE) * np.median(steps)  # a gap in the stamps is told by these
     places, leaps = places[even], leaps[even]
     if len(places) < _FEWEST or np.mean(leaps > 0) < _AHEAD:
         return None
     usual, count = float(np.median(leaps)), len(places)
-    share = count * usual * _whole_over_fast(channel.values) / channel.values.size
+    share = count * usual / fast / channel.values.size  # leaps are seen in fast stretches alone
     message = (
         f"{channel.name} leaps ahead {count} times, the first after sample {places[0]}, always the way it moves and by "
         f"as much as it does in {usual:.2g} samples (median), while the stamps go on evenly: samples were lost there, "
@@ -42,29 +42,22 @@ def lost_samples(channel: Channel, time: NDArray[np.float64]) -> Finding | None:
     return Finding("lost_samples", message, channel=channel.name, sample=int(places[0]), severity=severity)
 
 
-def _steps(values: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_]]:
-    """Places of steps, the usual ones about each, and where these are fast and go on alike on both sides."""
+def _leaps(values: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64], float]:
+    """Samples in fast stretches that the next one is far off from, by how many usual steps too far ahead; and the share
+    of the steps that lie in such stretches.
+
+    Fast is a step above their root mean square, by the usual ones about it, which go on alike on both sides.
+    """
     steps = np.diff(values)
     about = np.median(sliding_window_view(steps, _ABOUT), axis=1)
     places = np.arange(_ABOUT, len(steps) - _ABOUT)
     before, behind = about[places - _ABOUT], about[places + 1]
     usual = (before + behind) / 2
     is_fast = np.abs(usual) > np.sqrt(np.mean(usual**2))
-    return places, usual, is_fast & (before * behind > 0) & (np.abs(behind - before) < np.abs(usual))
-
-
-def _leaps(values: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Samples in fast stretches that the next one is far off from, and by how many usual steps too far ahead."""
-    places, usual, is_fast = _steps(values)
-    places, usual = places[is_fast], usual[is_fast]
+    is_fast &= (before * behind > 0) & (np.abs(behind - before) < np.abs(usual))
+    fast, places, usual = float(np.mean(is_fast)), places[is_fast], usual[is_fast]
     if len(places) < _FEWEST_SEEN:
-        return places[:0], usual[:0]
-    off = np.diff(values)[places] - usual
+        return places[:0], usual[:0], fast
+    off = steps[places] - usual
     is_leap = np.abs(off) > np.maximum(_LEAP * np.median(np.abs(off)), _SAMPLE * np.abs(usual))
-    return places[is_leap], off[is_leap] / usual[is_leap]
-
-
-def _whole_over_fast(values: NDArray[np.float64]) -> float:
-    """Steps over those in fast stretches, where alone leaps are seen."""
-    is_fast = _steps(values)[2]
-    return len(is_fast) / max(int(is_fast.sum()), 1)
+    return places[is_leap], off[is_leap] / usual[is_leap], fast
