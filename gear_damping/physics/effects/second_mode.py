@@ -36,14 +36,16 @@ def _at_the_lines(rig: Rig) -> tuple[Recipe, ...]:
     """
     sought = [(frequency, ratio) for frequency in rig.frequencies for ratio in RATIOS]
     sought += [(rig.values["natural_frequency"] / (2 * pi), ratio) for ratio in BEATS if rig.swells]
-    found = tuple(_begun(Mode(frequency, ratio, 0.01), HIGH, NEAR) for frequency, ratio in sought)
+    natural = rig.values["natural_frequency"] / (2 * pi)
+    found = tuple(_begun(Mode(at, ratio, 0.01), HIGH, _alone(at, natural)) for at, ratio in sought)
     found = found if rig.mode is None else (*found, _behind_a_drive(rig.mode))
     return tuple(replace(one, settled=("mass_ratio",)) for one in found) if rig.swings_freely else found
 
 
 def _behind_a_drive(mode: Mode) -> Recipe:
     """A load on a spring behind a drive, which the ground brakes where the records ask for it."""
-    bare, rate = _begun(mode, HEAVY, ABOUT), 2 * pi * mode.frequency
+    about = mode.frequency / ABOUT, mode.frequency * ABOUT
+    bare, rate = _begun(mode, HEAVY, about), 2 * pi * mode.frequency
     if mode.drag_rate == 0:
         return bare
     return replace(
@@ -54,7 +56,20 @@ def _behind_a_drive(mode: Mode) -> Recipe:
     )
 
 
-def _begun(mode: Mode, most: float, near: float) -> Recipe:
+def _alone(line: float, natural: float) -> tuple[float, float]:
+    """Range of where the second mass swings alone, in Hz, if a line is one of the two modes and `natural` the other.
+
+    It lies the farther from the line the heavier that mass is, up to where the heaviest of these modes is in tune: with
+    k the square of the first mass' own, k w^2 is the product of the squares of both and k + (1 + mu) w^2 is their sum.
+    """
+    total, product = line**2 + natural**2, (line * natural) ** 2
+    heaviest = min(HIGH, total**2 / (4 * product) - 1) if product > 0 else HIGH
+    parted = max(total**2 - 4 * (1 + heaviest) * product, 0.0) ** 0.5
+    alone = ((total + (parted if line > natural else -parted)) / (2 * (1 + heaviest))) ** 0.5
+    return min(line / NEAR, alone), max(line * NEAR, alone)
+
+
+def _begun(mode: Mode, most: float, within: tuple[float, float]) -> Recipe:
     """One variant that fits begin from, with the largest ratio of the masses and the range of its frequency.
 
     Two modes of a free swing have two frequencies and two dampings, which is one number less than two masses have: what
@@ -66,7 +81,7 @@ def _begun(mode: Mode, most: float, near: float) -> Recipe:
         scanned={"frequency": mode.frequency, "damping_ratio": mode.damping_ratio},
         within={
             "second_mode.mass_ratio": (LOW, most),
-            "second_mode.frequency": (mode.frequency / near, mode.frequency * near),
+            "second_mode.frequency": within,
             "second_mode.damping_ratio": DAMPED,
         },
         in_si=True,
