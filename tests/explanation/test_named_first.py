@@ -67,3 +67,10 @@ def test_what_has_run_into_a_bound_gives_way_to_none_of_any_size(of_any_size, fi
     fits = with_scores(tried(POWER, 2, 1.0), tried(SATURATION, 3, 0.97))
     fits[0].is_at_bound = True
     assert named_first(*fits, of_any_size=of_any_size) == first
+
+
+def test_what_contains_one_that_does_as_well_is_no_rival_of_it():
+    """A friction of one size was found beside a profile error, and with it one of two sizes that says the same."""
+    names = ["coulomb_friction", "asymmetric_friction", POWER, POWER]
+    assert bench(SearchSettings()).rivals("coulomb_friction", names) == (POWER,)
+    assert bench(SearchSettings()).rivals("asymmetric_friction", names) == ("coulomb_friction", POWER)

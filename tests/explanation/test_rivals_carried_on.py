@@ -46,7 +46,7 @@ def test_where_the_time_is_over_an_accepted_cause_is_no_rival_of_another():
     refuses = SimpleNamespace(refuses=lambda what: True)
     causes = (Cause(NAMES[0], (NAMES[1], NAMES[2])), Cause(NAMES[1], ()))
     state = SimpleNamespace(
-        bench=SimpleNamespace(budget=refuses),
+        bench=SimpleNamespace(budget=refuses, rivals=bench(SearchSettings()).rivals),
         accepted=causes,
         names={NAMES[0], NAMES[1]},
         going_with=lambda name: {name},

@@ -38,7 +38,7 @@ def _exchanged_at(state: State, place: int) -> State:
         share = cause.share + state.share_taken(best.outcome)
         return state.with_cause(place, Accepted(best.name, best, share, rivals), best.outcome)
     alike = [fit.name for fit in fits if fit.is_seen_in_fit and bench.is_as_good(fit.outcome, before)]
-    rivals = tuple(dict.fromkeys((*cause.confusable, *(name for name in alike if name != cause.name))))
+    rivals = bench.rivals(cause.name, (*cause.confusable, *alike))
     return state.with_cause(place, replace(cause, confusable=rivals))
 
 
@@ -60,7 +60,7 @@ def _simplified_at(state: State, place: int) -> State:
     if not bench.is_as_good(fit.outcome, state.outcome) and bench.is_further(state.outcome, fit.outcome):
         return state
     bench.log(f"{simpler} does as well as {cause.name}, with fewer parameters")
-    rivals = tuple(name for name in cause.confusable if name != simpler)
+    rivals = bench.rivals(simpler, cause.confusable)
     return state.with_cause(place, Accepted(simpler, fit, cause.share, rivals), fit.outcome)
 
 
@@ -103,7 +103,7 @@ def beside_the_others(state: State) -> State:
 
 def _beside_the_others_at(state: State, place: int) -> State:
     bench, cause = state.bench, state.accepted[place]
-    rivals = [name for name in cause.confusable if name not in state.names]
+    rivals = [name for name in bench.rivals(cause.name, cause.confusable) if name not in state.names]
     if not rivals or len(state.going_with(cause.name)) > 1:
         return state.with_cause(place, replace(cause, confusable=()))
     if bench.budget.refuses(f"rivals of {cause.name} beside the others"):
@@ -116,6 +116,6 @@ def _beside_the_others_at(state: State, place: int) -> State:
     if cause.refit.is_at_bound and inside:  # it stands in for another at the end of what it can be
         instead = smallest(inside)
         bench.log(f"{instead.name} does as well as {cause.name}, which has run into a bound")
-        others = tuple(fit.name for fit in inside if fit is not instead)
+        others = bench.rivals(instead.name, [fit.name for fit in inside])
         return state.with_cause(place, Accepted(instead.name, instead, cause.share, others), instead.outcome)
     return state.with_cause(place, replace(cause, confusable=tuple(fit.name for fit in kept)))

@@ -1,6 +1,6 @@
 """The evaluation of candidates: score, fit in full, compare on left-out records."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import reduce
 from math import inf
@@ -252,7 +252,12 @@ class Bench(Comparison):
         near = [f for f in kept if f.gain >= self.settings.rival_share * best.gain]
         first = self._within_bounds(smallest(self._sized(near or kept)), fits)
         plain = self._plain_form(first, fits)
-        return plain, tuple(dict.fromkeys(f.name for f in kept if f.name not in (first.name, plain.name)))
+        return plain, self.rivals(plain.name, [f.name for f in kept if f.name != first.name])
+
+    def rivals(self, name: str, others: Iterable[str]) -> tuple[str, ...]:
+        """The other effects of several, each once, but for what contains this one, of which it is the simpler form."""
+        library = self.evidence.library
+        return tuple(dict.fromkeys(one for one in others if one != name and library[one].cause.simpler != name))
 
     def _sized(self, fits: Sequence[Refit]) -> Sequence[Refit]:
         """Those of whose size the records tell anything; all where that is none of several.

@@ -8,7 +8,7 @@ import torch
 from gear_damping.explanation.evidence.excess import Excess
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.trials.bench import Bench
-from gear_damping.physics.catalogue import effect_class
+from gear_damping.physics.catalogue import builtin_effects, effect_class
 from gear_damping.physics.systems.gear_pair import GearPair
 
 NAMES = (
@@ -76,6 +76,8 @@ class MadeUpBench(Bench):
 def bench(settings: SearchSettings, leaves: list[tuple[SimpleNamespace, Excess]] = (), **evidence: object) -> Bench:
     """A bench with these thresholds."""
     noise = SimpleNamespace(value=1.0, correlation=1.0)
-    known = SimpleNamespace(settings=settings, **{"segments": None, "has": GearPair.has} | evidence)
+    known = SimpleNamespace(
+        settings=settings, **{"segments": None, "has": GearPair.has, "library": builtin_effects()} | evidence
+    )
     said = {id(model): what for model, what in leaves}
     return MadeUpBench(known, noise, lambda text: None, None, noise, leaves=said)
