@@ -20,6 +20,7 @@ from gear_damping.explanation.evidence.noise import NoiseLevel, Scatter, noise_o
 from gear_damping.explanation.evidence.records import Evidence, evidence_of
 from gear_damping.explanation.evidence.stated_speed import stated_speed_faults
 from gear_damping.explanation.evidence.useful_samples import at_useful_rate, of_useful_length
+from gear_damping.explanation.longer import over_longer
 from gear_damping.explanation.model.calibration_error import calibration_error
 from gear_damping.explanation.model.contradicted import contradicts_stated, noise_above
 from gear_damping.explanation.model.gives_back import takes_and_gives
@@ -228,14 +229,20 @@ def _searched(
         beating = search(nominal, bench)
         if beating.accepted:
             return beating
-    evidence = replace(evidence, segments=segments_of(nominal.hypothesis, evidence))
+
+    def begun(segments: Segments) -> tuple[Bench, Outcome]:
+        """The bench and the nominal model with records cut so."""
+        cut = replace(evidence, segments=segments)
+        fitted = recalibrated(found, cut, solver)
+        known = replace(noise, scatter=_scatter(fitted, cut, solver))
+        return replace(bench, evidence=cut, noise=known, floor=known), fitted
+
+    segments = segments_of(nominal.hypothesis, evidence)
     why = "the nominal model loses a record" if is_lost else "small errors grow"
-    log(f"{why}: records are predicted in segments of {evidence.segments.seconds:.3g} s")
-    nominal = recalibrated(found, evidence, solver)
-    noise = replace(noise, scatter=_scatter(nominal, evidence, solver))
-    bench = replace(bench, evidence=evidence, noise=noise, floor=noise)
-    _tell(nominal, bench)
-    return search(nominal, bench, state.first_fits[:1])
+    log(f"{why}: records are predicted in segments of {segments.seconds:.3g} s")
+    short, nominal = begun(segments)
+    _tell(nominal, short)
+    return over_longer(search(nominal, short, state.first_fits[:1]), begun)
 
 
 def has_another_mode(nominal: Outcome, bench: Bench) -> bool:

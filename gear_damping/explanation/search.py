@@ -33,6 +33,7 @@ def search(nominal: Outcome, bench: Bench, carried_on: Sequence[Refit] = ()) -> 
     while state.unsized and not bench.budget.refuses("effects in the place of those of no known size"):
         state = _doubted(_extended(looked(state.without_unsized())))
     state = _or_before(state)
+    bench.budget.asks_again(state.names)  # another form of what was found waits for nothing any more
     return beside_the_others(state) if len(state.accepted) > 1 else state
 
 
