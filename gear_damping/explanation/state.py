@@ -1,6 +1,6 @@
 """What is known so far: every step of a search takes a state and gives the next."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 
 from gear_damping.explanation.evidence.excess import Excess, excess
@@ -224,6 +224,22 @@ class State:
         share = min(state.share_taken(outcome), 1.0)
         bench.log(f"{best.name} takes {100 * share:.1f} % of the excess on left-out records")
         return replace(state, outcome=outcome, accepted=(*self.accepted, Accepted(best.name, best, share, rivals)))
+
+    def left_of(self, gone: Collection[str], outcome: Outcome) -> tuple[Accepted, ...]:
+        """The causes without some, the first of them with what those took in its place.
+
+        Two that came together have half of their share each, and one that takes all by itself has then no less.
+
+        Args:
+            gone: Names.
+            outcome: The model without them.
+        """
+        kept = tuple(cause for cause in self.accepted if cause.name not in gone)
+        if not kept:
+            return ()
+        taken = sum(cause.share for cause in self.accepted if cause.name in gone)
+        over = taken - self.share_between(outcome, self.outcome)
+        return (replace(kept[0], share=kept[0].share + over), *kept[1:])
 
     def share_taken(self, outcome: Outcome) -> float:
         """What another model takes of what this one leaves, as a share of what the nominal one leaves."""

@@ -126,7 +126,7 @@ def _fewer(state: State, name: str) -> Outcome:
 def _dropped(state: State, name: str, outcome: Outcome) -> State:
     """The state with a model without one of its causes, which counts as rejected."""
     gone = state.going_with(name)
-    kept = tuple(cause for cause in state.accepted if cause.name not in gone)
+    kept = state.left_of(gone, outcome)
     refits = (cause.refit for cause in state.accepted if cause.name in gone)
     return replace(state, accepted=kept, outcome=outcome, rejected=(*refits, *state.rejected))
 

@@ -78,12 +78,11 @@ def pruned(state: State) -> State:
             continue
         names = state.going_with(cause.name)
         gone = [other for other in state.accepted if other.name in names]
-        left = [other for other in state.accepted if other.name not in names]
+        left = state.left_of(names, without)
         if not left:
             continue
         bench.log(f"{cause.name} is not needed beside the others")
-        first = replace(left[0], share=left[0].share + sum(other.share for other in gone))
-        state = replace(state, outcome=without, accepted=(first, *left[1:]), pruned=(*state.pruned, *gone))
+        state = replace(state, outcome=without, accepted=left, pruned=(*state.pruned, *gone))
     return state
 
 

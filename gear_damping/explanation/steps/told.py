@@ -28,7 +28,7 @@ def told(state: State) -> State:
     while (untold := _untold(state)) is not None:
         cause, outcome = untold
         state.bench.log(f"{cause.name} {BENDS if _bends(state, cause) else OF_ANY_SIZE}")
-        kept = tuple(other for other in state.accepted if other is not cause)
+        kept = state.left_of({cause.name}, outcome)
         rejected, unsized = (cause.refit, *state.rejected), state.unsized | {cause.name}
         state = replace(state, outcome=outcome, accepted=kept, rejected=rejected, unsized=unsized)
     return state
