@@ -41,6 +41,9 @@ class MadeUp(Bench):
     def without(self, outcome, name):
         return self.failed[name]
 
+    def excess(self, outcome):
+        return SimpleNamespace(percent=1.0)
+
 
 def state_of(causes, outcome, fits=(), without=None):
     """A state with causes (name, rivals), its model and the fits of rivals."""

@@ -53,9 +53,9 @@ def test_a_search_that_drops_a_bearing_drops_what_acts_on_it():
     whole = hypothesis(CAUSES)
     accepted = tuple(Accepted(name, SimpleNamespace(outcome=None), 0.3, ()) for name in NAMES)
     outcome = SimpleNamespace(hypothesis=whole)
-    state = State(
-        **dict.fromkeys(State.__dataclass_fields__) | {"accepted": accepted, "outcome": outcome, "rejected": ()}
-    )
+    bench = SimpleNamespace(excess=lambda outcome: SimpleNamespace(percent=1.0))
+    known = {"bench": bench, "accepted": accepted, "outcome": outcome, "rejected": ()}
+    state = State(**dict.fromkeys(State.__dataclass_fields__) | known)
     left = _dropped(state, "bearing_flexibility", outcome)
     assert [cause.name for cause in left.accepted] == ["torque_ripple"]
     assert len(left.rejected) == 2

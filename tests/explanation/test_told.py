@@ -207,6 +207,7 @@ def test_of_causes_that_trade_against_each_other_the_least_needed_goes_first(ord
         return SimpleNamespace(is_finite=True, left_out_cost=costs[name], alone=len(kept) == 1, causes=kept)
 
     bench = SimpleNamespace(evidence=None, settings=SearchSettings(), log=lambda text: None, without=without)
+    bench.excess = lambda outcome: SimpleNamespace(percent=1.0)
     refit = made_up(True)
     state = State(bench, None, whole, tuple(Accepted(name, refit, 0.5, ()) for name in order))
     found = told_of(state)
