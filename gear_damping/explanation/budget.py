@@ -64,7 +64,7 @@ class Budget:
 
     @contextmanager
     def trying(self, is_first: bool) -> Iterator[None]:
-        """Around the trial of a cause: the first one has the kept time too, as without it there is nothing to test."""
+        """Around the trial of a cause: until there is one it has the kept time too, as there is nothing to test yet."""
         self._is_first = is_first
         try:
             yield

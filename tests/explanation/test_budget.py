@@ -1,6 +1,10 @@
 """The time of a search: a part of it is kept for what is under way and for the records that are opened at the end."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
+
+import pytest
 
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.evidence.records import Evidence
@@ -8,7 +12,17 @@ from gear_damping.explanation.explain import _with_the_last_time
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps import pairs
+from gear_damping.explanation.trials import bench as benches
 from gear_damping.explanation.trials.bench import Bench
+from tests.explanation.decisions.made_up import bench, fit
+
+
+@dataclass(frozen=True)
+class Named:
+    """A candidate of one strength."""
+
+    name: str
+    strengths: Sequence[int] = (0,)
 
 
 class Clock:
@@ -126,3 +140,26 @@ def test_no_second_effect_is_fitted_once_the_time_is_over():
     assert pairs._seconds(SimpleNamespace(name="base", outcome=None), state) == []
     assert fitted == ["a"]
     assert budget.not_tried[0] == "base with b"
+
+
+@pytest.mark.parametrize(("t", "tried"), [(1.0, ["a", "b", "c"]), (50.0, ["a"])])
+def test_until_something_is_found_the_kept_time_is_for_trying(t, tried, monkeypatch):
+    """A null was said to hide something, as two of five minutes were kept for looks at causes that there were not."""
+    clock, fitted = Clock(), []
+    budget = Budget(5.0, clock)
+    with budget.looking():
+        clock.now = 60.0  # for which 150 s are kept
+
+    def full_fit(self, score, *_):
+        fitted.append(score.candidate.name)
+        clock.now = 200.0
+        return fit(score.candidate.name, cost=9.0, t=t)
+
+    monkeypatch.setattr(benches, "chosen", lambda ranked, *_, **__: ranked)
+    monkeypatch.setattr(Bench, "full_fit", full_fit)
+    ranked = [SimpleNamespace(candidate=Named(name), gain=0.5 - 0.1 * place) for place, name in enumerate("abc")]
+    base = SimpleNamespace(fitted=SimpleNamespace(cost=10.0, converged=True), hypothesis=SimpleNamespace(causes=()))
+    monkeypatch.setattr(Bench, "_is_enough", lambda *_: False)
+    monkeypatch.setattr(Bench, "waits", lambda *_: False)
+    replace(bench(SearchSettings()), budget=budget).full_fits(ranked, base, base)
+    assert fitted == tried
