@@ -13,6 +13,7 @@ SCORED_SHARE = 0.92  # of it: no effect is scored later, as what scores are for 
 MORE = 4  # times the minutes that were too few: the next try should not be too short too
 MOST_KEPT = 0.5  # of the time, for the last looks, however long they take: the other half is for trying causes
 LOOKS_LEFT = 2.5  # after the search: beside the last cause, once more where one is dropped, and half a one to spare
+FIRST_LOOK = 1.0  # while nothing is found: beside what the next trial may find
 
 
 @dataclass
@@ -30,7 +31,7 @@ class Budget:
     not_tried: list[str] = field(default_factory=list)
     _begun: float = field(init=False)
     _look: float = field(default=0.0, init=False)
-    _is_first: bool = field(default=False, init=False)
+    _looks: float = field(default=LOOKS_LEFT, init=False)
     _waiting: set[str] = field(default_factory=set, init=False)
 
     def __post_init__(self) -> None:
@@ -40,7 +41,7 @@ class Budget:
     @property
     def spent(self) -> bool:
         """Whether the time for the search is over."""
-        kept = 0.0 if self._is_first else min(LOOKS_LEFT * self._look, MOST_KEPT * 60 * self.minutes)
+        kept = min(self._looks * self._look, MOST_KEPT * 60 * self.minutes)
         return self._is_over(SEARCH_SHARE) or self.clock() - self._begun + kept > 60 * self.minutes
 
     def _is_over(self, share: float) -> bool:
@@ -63,13 +64,18 @@ class Budget:
         self._look = max(self._look, self.clock() - begun)
 
     @contextmanager
-    def trying(self, is_first: bool) -> Iterator[None]:
-        """Around the trial of a cause: until there is one it has the kept time too, as there is nothing to test yet."""
-        self._is_first = is_first
+    def trying(self, is_first: bool, is_any: bool = True) -> Iterator[None]:
+        """Around the trial of a cause: the first has the kept time too, as without it there is nothing to test.
+
+        Args:
+            is_first: Whether none was tried before.
+            is_any: Whether one is found: until then time is kept for no more than a look at what the next one leaves.
+        """
+        self._looks = 0.0 if is_first else LOOKS_LEFT if is_any else FIRST_LOOK
         try:
             yield
         finally:
-            self._is_first = False
+            self._looks = LOOKS_LEFT
 
     @property
     def sentence(self) -> str:

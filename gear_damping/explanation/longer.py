@@ -21,7 +21,7 @@ def over_longer(cut: State, begun: Begun) -> State:
     """The search in segments, or that over as long ones as its first cause can be predicted over.
 
     A segment of a few swings hardly shows that the frequency depends on the amplitude, for which the nominal model may
-    have lost a record. What is found there may follow all of it.
+    have lost a record. What is found there may follow all of it. Shafts keep a motion in step.
 
     Args:
         cut: Where the search in short segments ended.

@@ -142,17 +142,19 @@ def test_no_second_effect_is_fitted_once_the_time_is_over():
     assert budget.not_tried[0] == "base with b"
 
 
-@pytest.mark.parametrize(("t", "tried"), [(1.0, ["a", "b", "c"]), (50.0, ["a"])])
-def test_until_something_is_found_the_kept_time_is_for_trying(t, tried, monkeypatch):
+@pytest.mark.parametrize(
+    ("t", "ends", "tried"), [(1.0, 200.0, ["a", "b", "c"]), (1.0, 245.0, ["a"]), (50.0, 200.0, ["a"])]
+)
+def test_until_something_is_found_time_is_kept_for_one_look(t, ends, tried, monkeypatch):
     """A null was said to hide something, as two of five minutes were kept for looks at causes that there were not."""
     clock, fitted = Clock(), []
     budget = Budget(5.0, clock)
     with budget.looking():
-        clock.now = 60.0  # for which 150 s are kept
+        clock.now = 60.0  # of which two and a half are kept where there is something to look at
 
     def full_fit(self, score, *_):
         fitted.append(score.candidate.name)
-        clock.now = 200.0
+        clock.now = ends
         return fit(score.candidate.name, cost=9.0, t=t)
 
     monkeypatch.setattr(benches, "chosen", lambda ranked, *_, **__: ranked)

@@ -142,8 +142,9 @@ class Bench(Comparison):
         for score in sorted(worth, key=lambda one: (one.gain < enough, has_many(one), -one.gain)):
             if any(self._is_enough(fit, score, base) for fit in fits) or self.waits(score, fits, base):
                 continue
-            is_any = bool(outcome.hypothesis.causes) or any(self._is_clear(fit) for fit in fits)
-            with self.budget.trying(is_first=not is_any):
+            causes = outcome.hypothesis.causes
+            is_any = bool(causes) or any(self._is_clear(fit) for fit in fits)
+            with self.budget.trying(not fits and not causes, is_any):
                 if self.budget.refuses(score.candidate.name):
                     continue
                 most = max((base - fit.outcome.fitted.cost for fit in fits), default=0.0)
