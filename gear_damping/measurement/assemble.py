@@ -139,12 +139,16 @@ class Assembler:
 
     def _held(self, raw: RawChannel, record: RawRecord, switches: bool, notes: list[str]) -> bool:
         """Whether an input stays at each value: as stated, or as it looks."""
-        stated = raw.plan.sensor.get("hold")
+        stated, is_filtered = raw.plan.sensor.get("hold"), bool(record.plan.resample) and raw.own_time is None
         if stated and _is_moved(raw, record):
             rule = "cannot be held where its samples are moved to other instants"
             remedy = "leave out hold; where each value of the file lasts one of its sampling intervals T, "
             remedy += "give a delay of -T/2"
+            remedy = f"leave out resample, or {remedy.removeprefix('leave out ')}" if is_filtered else remedy
             raise InputError(Problem(f"{raw.plan.key}.hold", rule, True, remedy, self.source))
+        if is_filtered and stated is None and is_staircase(raw.values):
+            text = "comes in steps, which the filter of resample rounds and lets ring; without it each value would stay"
+            notes.append(f"{raw.plan.name}: {text} until the next")
         if switches and stated is None:
             notes.append(f"{raw.plan.name}: comes in steps, and stays at each value until the next (else hold: false)")
         return switches

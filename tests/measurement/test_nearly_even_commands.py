@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 import yaml
 
+from gear_damping.errors import InputError
 from gear_damping.measurement.load import load_measurement
 
 
-def loaded(folder, hold=None, wave=False):
+def declared(folder, hold=None, wave=False, **more):
     rng, n = np.random.default_rng(0), 3000
     stamps = np.arange(n) / 150 + 2e-5 * rng.uniform(-1, 1, n)
     force = 4 * np.sign(np.sin(2 * np.pi * 0.7 * stamps))
@@ -16,8 +17,13 @@ def loaded(folder, hold=None, wave=False):
     np.savez(folder / "a.npz", t=stamps, u=force, x=place + 1e-4 * rng.normal(size=n))
     command = {"column": "u", "unit": "A"} | ({} if hold is None else {"hold": hold})
     channels = {"time": {"column": "t", "unit": "s"}, "force": command, "displacement": {"column": "x", "unit": "m"}}
-    declared = {"system": "oscillator", "records": [{"file": "a.npz", "channels": channels}]}
-    (folder / "measurement.yaml").write_text(yaml.safe_dump(declared))
+    said = {"system": "oscillator", "records": [{"file": "a.npz", "channels": channels} | more]}
+    (folder / "measurement.yaml").write_text(yaml.safe_dump(said))
+    return force
+
+
+def loaded(folder, hold=None, wave=False):
+    force = declared(folder, hold, wave)
     (record,) = load_measurement(folder / "measurement.yaml").records
     assert any("resampled to a uniform grid" in note for note in record.notes)
     return record.channels["force"], force
@@ -38,3 +44,20 @@ def test_a_wave_is_no_command(tmp_path):
     channel, force = loaded(tmp_path, wave=True)
     assert not channel.hold
     assert np.any(channel.values != force)
+
+
+def test_one_that_is_filtered_is_said_to_ring(tmp_path):
+    declared(tmp_path, resample="50 Hz")
+    (record,) = load_measurement(tmp_path / "measurement.yaml").records
+    assert record.channels["force"].values.max() > 4.1  # of 4
+    (note,) = (note for note in record.notes if "lets ring" in note)
+    assert note.startswith("force: comes in steps")
+    declared(tmp_path, wave=True, resample="50 Hz")
+    (record,) = load_measurement(tmp_path / "measurement.yaml").records
+    assert not any("lets ring" in note for note in record.notes)
+
+
+def test_one_that_is_filtered_cannot_be_held(tmp_path):
+    declared(tmp_path, hold=True, resample="50 Hz")
+    with pytest.raises(InputError, match=r"force\.hold.*leave out resample, or hold"):
+        load_measurement(tmp_path / "measurement.yaml")
