@@ -120,12 +120,20 @@ class UnitSystem:
         unit = parse_unit(quantity.unit, key, source)
         per = 2 - self._response.order
         wanted = self._response.unit.dimension * _PER_SECOND**per * self._force.unit.dimension**-1
-        text = f"{self._response.text}{_PER[per]}/({self._force.text})"
+        text = _gain_text(self._response.text, _PER[per], self._force.text)
         if unit.dimension != wanted:
             rule = f"the unit '{quantity.unit}' is not one of the kind of '{text}'"
             raise InputError(Problem(key, rule, quantity.value, f"give it in '{text}'", source))
         factor = unit.factor / self._response.unit.factor * self._force.unit.factor
         return Quantity(quantity.value * factor, text, quantity.uncertainty)
+
+
+def _gain_text(response: str, per: str, force: str) -> str:
+    """The unit of a gain as people write it: rad/s^2/V, and not rad/s/s/(V)."""
+    above = f"{response}^2" if response.endswith("/s") and per == "/s" else response + per
+    if force == "1":
+        return above
+    return f"{above}/{force}" if force.isalpha() else f"{above}/({force})"
 
 
 def _around(unit: Unit, radius: float | None, kept: str, key: str, text: str, source: str) -> Conversion:
