@@ -168,7 +168,7 @@ def test_an_oscillator_stays_in_its_unit_and_its_derivatives_follow(tmp_path):
     np.testing.assert_allclose(found["velocity"].values, 1e3 * rows[:, 2], rtol=1e-15)
     np.testing.assert_array_equal(found["force"].values, rows[:, 3])
     assert measurement.parameters["force_gain"].value == pytest.approx(2000.0)
-    assert measurement.parameters["force_gain"].unit == "mm/s^2/(mV)"
+    assert measurement.parameters["force_gain"].unit == "mm/s^2/mV"
 
 
 def test_the_units_of_the_first_record_hold_for_all(tmp_path):
