@@ -142,9 +142,8 @@ class Assembler:
         stated, is_filtered = raw.plan.sensor.get("hold"), bool(record.plan.resample) and raw.own_time is None
         if stated and _is_moved(raw, record):
             rule = "cannot be held where its samples are moved to other instants"
-            remedy = "leave out hold; where each value of the file lasts one of its sampling intervals T, "
-            remedy += "give a delay of -T/2"
-            remedy = f"leave out resample, or {remedy.removeprefix('leave out ')}" if is_filtered else remedy
+            remedy = "leave out resample, or hold" if is_filtered else "leave out hold"
+            remedy += "; where each value of the file lasts one of its sampling intervals T, give a delay of -T/2"
             raise InputError(Problem(f"{raw.plan.key}.hold", rule, True, remedy, self.source))
         if is_filtered and stated is None and is_staircase(raw.values):
             text = "comes in steps, which the filter of resample rounds and lets ring; without it each value would stay"

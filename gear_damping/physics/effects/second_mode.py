@@ -34,9 +34,9 @@ def _at_the_lines(rig: Rig) -> tuple[Recipe, ...]:
 
     Where a free motion grows again its own frequency stands for two that beat.
     """
-    sought = [(frequency, ratio) for frequency in rig.frequencies for ratio in RATIOS]
-    sought += [(rig.values["natural_frequency"] / (2 * pi), ratio) for ratio in BEATS if rig.swells]
     natural = rig.values["natural_frequency"] / (2 * pi)
+    sought = [(frequency, ratio) for frequency in rig.frequencies for ratio in RATIOS]
+    sought += [(natural, ratio) for ratio in BEATS if rig.swells]
     found = tuple(_begun(Mode(at, ratio, 0.01), HIGH, _alone(at, natural)) for at, ratio in sought)
     found = found if rig.mode is None else (*found, _behind_a_drive(rig.mode))
     return tuple(replace(one, settled=("mass_ratio",)) for one in found) if rig.swings_freely else found
