@@ -270,6 +270,7 @@ def test_no_case_begins_after_the_minutes_are_over(tmp_path):
     assert ask(questions(("null",), 3, 0), tmp_path, 1, lambda text: None, minutes=-1.0, solve=solved) == []
 
 
+@pytest.mark.slow
 def test_ctrl_c_keeps_what_is_done_and_leaves_no_process(tmp_path):
     command = [sys.executable, "-m", "tests.blind", "--stratum", "null", "--cases", "40", "--processes", "1"]
     command += ["--out", str(tmp_path)]

@@ -282,10 +282,12 @@ QUICK = ("sampling_rate", "transmission_error")  # of a gear pair; its time is r
 def is_slow(path: tuple[str, ...]) -> bool:
     """Whether a key is one of many that lie alike, each a second of fitting: a unit is read with every value.
 
-    So are channels of a gear pair. That another unit changes what is loaded is seen in tests of the measurement.
+    So are channels and uncertainties of a gear pair. That another unit changes what is loaded is seen in tests of the
+    measurement.
     """
     is_unit = path[-1] == "unit" and path not in REFUSED
-    return is_unit or (path[:3] == ("gear_pair", "records", "channels") and path[3] not in QUICK)
+    is_uncertainty = path[0] == "gear_pair" and path[-1] == "uncertainty"
+    return is_unit or is_uncertainty or (path[:3] == ("gear_pair", "records", "channels") and path[3] not in QUICK)
 
 
 WALKED = [

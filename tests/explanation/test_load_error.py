@@ -129,6 +129,7 @@ def test_noise_of_the_sensor_of_a_load_is_none_though_a_few_blocks_of_a_narrow_r
     assert calibrated(light).evidence.input_noise
 
 
+@pytest.mark.slow
 def test_where_the_error_of_a_load_is_unknown_blocks_of_the_residual_decide():
     evidence = rig(is_in_motion=False, highest=6.0, count=3)
     found = calibrated(evidence)

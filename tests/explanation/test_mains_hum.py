@@ -52,9 +52,8 @@ def established(content):
     return [cause["name"] for cause in content["causes"] if cause["status"] == "established"]
 
 
-@pytest.mark.parametrize(
-    ("hertz", "channel"), [(50.03, "displacement"), pytest.param(59.98, "velocity", marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("hertz", "channel"), [(50.03, "displacement"), (59.98, "velocity")])
 def test_a_hum_of_either_grid_is_named(tmp_path, hertz, channel):
     content = explain(load_measurement(written(tmp_path, hertz, channel=channel))).content
     assert (content["verdict"], established(content)) == ("explained", ["mains_hum"])

@@ -72,7 +72,8 @@ def named(content):
     return content["verdict"], [cause["name"] for cause in content["causes"] if cause["status"] == "established"]
 
 
-@pytest.mark.parametrize("kind", ["displacement", pytest.param("velocity", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["displacement", "velocity"])
 def test_a_sensor_on_the_other_mass_is_seen(tmp_path, kind):
     content = explain(load_measurement(written(tmp_path, kind, sensor=1))).content
     assert named(content) == ("explained", ["noncollocated_mode"])

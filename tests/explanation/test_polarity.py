@@ -125,7 +125,8 @@ def test_only_the_channel_of_that_place_is_turned(evidence):
     assert torch.equal(second.others[0][1], -record.others[0][1])
 
 
-@pytest.mark.parametrize("sign", [pytest.param(1.0, marks=pytest.mark.slow), -1.0])
+@pytest.mark.slow
+@pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_base_that_counts_the_other_way_round_is_a_data_problem(tmp_path, sign):
     content = explain(base_excited(tmp_path, sign)).content
     assert content["verdict"] == ("consistent" if sign > 0 else "data_problem")

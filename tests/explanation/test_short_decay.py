@@ -54,9 +54,10 @@ def test_a_linear_one_is_consistent_with_its_damping(folder):
     assert high - low < 0.4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "names"),
-    [pytest.param("dry", {"coulomb_friction"}, marks=pytest.mark.slow), ("cubic", {"cubic_stiffness"})],
+    [("dry", {"coulomb_friction"}), ("cubic", {"cubic_stiffness"})],
 )
 def test_one_with_a_clear_effect_is_named(kind, names, folder):
     content, _ = explained(kind, 6.0, folder)

@@ -53,9 +53,8 @@ def test_noise_on_a_measured_input_is_no_movement():
     assert audible_samples(stroke) < 5 * RATE
 
 
-@pytest.mark.parametrize(
-    ("knobs", "names"), [({}, set()), pytest.param({"cubic": 0.3}, {"cubic_stiffness"}, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("knobs", "names"), [({}, set()), ({"cubic": 0.3}, {"cubic_stiffness"})])
 def test_a_long_tail_changes_no_answer(knobs, names, tmp_path):
     periods = 400.0
     motion = move(members([{"zeta": 0.01} | knobs]), [NONE], np.array([[1.0], [0.0]]), 2 * np.pi * periods + 1)

@@ -34,9 +34,8 @@ def evidence(tmp_path, monkeypatch):
     return rig, with_noise(found, measurement, lambda _: None)[0]
 
 
-@pytest.mark.parametrize(
-    ("edges", "is_right"), [(calibrate.EDGES, True), pytest.param((0.0,), False, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("edges", "is_right"), [(calibrate.EDGES, True), ((0.0,), False)])
 def test_the_damping_of_soft_teeth_is_found_where_the_wave_may_lack_its_corners(evidence, monkeypatch, edges, is_right):
     monkeypatch.setattr(calibrate, "EDGES", edges)
     rig, measured = evidence

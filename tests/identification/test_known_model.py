@@ -149,6 +149,7 @@ def gears(n_runs=24, gap=None, torque=(0.8, 1.2)):
     )
 
 
+@pytest.mark.slow
 def test_gear_pairs_are_estimated_as_well_as_the_bound_allows():
     plan = replace(gears(), n_samples=500)
     runs = run_plan(plan)
@@ -165,6 +166,7 @@ def test_gear_pairs_are_estimated_as_well_as_the_bound_allows():
     assert found["coverage90"] >= 0.7
 
 
+@pytest.mark.slow
 def test_where_flanks_part_the_search_goes_astray_and_the_segments_do_not():
     plan = replace(gears(24, gap=100e-6, torque=(0.6, 0.8)), n_samples=400)
     runs = run_plan(plan)

@@ -167,7 +167,9 @@ def test_what_does_not_suit_is_said_with_what_would(name, values, drive, said):
         KINDS[name]({}).estimate(recorded(values, inputs))
 
 
-@pytest.mark.parametrize("name", sorted(KINDS))
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name == "output_error" else name for name in sorted(KINDS)]
+)
 def test_noise_in_a_band_tells_no_damping(name):
     """It is refused, or its interval is as wide as what is said."""
     for seed in range(5):
@@ -259,6 +261,7 @@ def test_a_motion_under_an_unmeasured_load_has_no_ring_down(name, ratio):
     assert refused >= 5
 
 
+@pytest.mark.slow
 def test_output_error_doubts_what_is_no_ring_down():
     values = ambient(0.02, 20.0)
     assert "something that was not measured drives it" in KINDS["output_error"]({}).estimate(recorded(values)).doubt

@@ -82,6 +82,7 @@ def test_a_yaml_that_is_no_yaml_is_answered_too(tmp_path):
     assert "task=inspect needs a measurement; remedy: measurement.path=PATH/FILE" in said
 
 
+@pytest.mark.slow
 def test_a_sweep_over_measurements_is_not_refused_for_its_first(tmp_path):
     (tmp_path / "a.yaml").write_text(WRONG)
     (tmp_path / "b.csv").write_text("time,x\n" + "".join(f"{k / 100},{k % 7 - 3}\n" for k in range(99)))

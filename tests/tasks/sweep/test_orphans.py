@@ -41,6 +41,7 @@ def numbers(folder):
     return [int(text) for path in folder.glob("*.pid") if (text := path.read_text())]
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(200)
 def test_workers_whose_launcher_is_killed_end(tmp_path):
     (tmp_path / "slow.py").write_text(SLOW)
