@@ -10,6 +10,7 @@ _LONGEST = 8192  # samples of a segment: more would resolve no floor and cost ti
 _AVERAGED = 4  # segments, at least, where the record is long enough
 _NUTTALL = (0.3635819, -0.4891775, 0.1365995, -0.0106411)  # side lobes 98 dB down: what is strong hides no floor
 _SKIPPED, _TOP = 4, 0.95  # lowest lines, which hold trends; share of the band below the anti-alias corner
+_CHANCE = 0.01  # that the highest line of white noise counts as one
 _QUANTILE, _DEVIATE = 0.2, -0.8416  # of the lines that count as floor; the normal deviate of that quantile
 
 
@@ -22,7 +23,7 @@ class Spectrum:
         density: (m,) in the unit of the values squared over that of the frequency.
         averaged: Segments that were averaged.
         strongest: The frequency of the highest line of the whole record; None where that lasts as long as the record,
-            as of what coasts down or drifts.
+            as of what coasts down or drifts, and where white noise has one as high.
     """
 
     frequency: NDArray[np.float64]
@@ -77,9 +78,10 @@ def spectrum_of(values: NDArray[np.float64], rate: float = 1.0) -> Spectrum | No
 
 
 def _strongest(values: NDArray[np.float64]) -> int:
-    """In periods of all the values, without the line through them."""
+    """In periods of all the values, without the line through them; 0 where noise has as high a one (Fisher 1929)."""
     place = np.linspace(-1.0, 1.0, values.size)
     centred = values - values.mean()
     level = centred - place * (centred @ place) / (place @ place)
-    lines = np.abs(np.fft.rfft(level * np.hanning(values.size)))
-    return 1 + int(np.argmax(lines[1:]))
+    power = np.abs(np.fft.rfft(level * np.hanning(values.size)))[1:] ** 2
+    highest = int(np.argmax(power))
+    return 1 + highest if power[highest] > np.log(power.size / _CHANCE) * power.mean() else 0

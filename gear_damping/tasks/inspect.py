@@ -24,7 +24,7 @@ from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.measurement.record_checks import MESH_RESPONSES
 from gear_damping.measurement.resolution import step_of
-from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
+from gear_damping.measurement.spectral_floor import FEWEST, Spectrum, spectrum_of
 from gear_damping.measurement.starting_yaml import starting_yaml
 from gear_damping.reporting.inspection import Curve, Panel, inspection_figure
 from gear_damping.reporting.style import save
@@ -35,6 +35,8 @@ JSON_NAME = "inspection.json"  # what the report is made of
 LISTED = 20  # of what a file holds besides real numbers, and of its columns where they are many
 MOST_COLUMNS = 100  # that are listed one by one: what has more hides what is said of the file
 LEVELS = 4  # between which a command switches: fewer than a converter has that rounds a motion
+PARTS = 10  # of a record, in which a shaft's speed is told: fewer hide a run-up, more show how its counter rounds
+STEADY = 0.01  # of the speed, by which it may change: what a drive holds its speed to
 ROUNDED = 1e-9  # of the range: less is what a difference of large angles or a sum of many values is rounded by
 log = logging.getLogger("gear_damping").info
 
@@ -292,15 +294,28 @@ def _record_lines(record: Record) -> Iterator[str]:
 def _channel(record: Record, channel: Channel, values: np.ndarray, spectrum: Spectrum | None) -> str:
     said = f"{values.min() + 0.0:.5g} to {values.max() + 0.0:.5g} {channel.declared_unit}"  # no -0
     if channel.name == "pinion_angle":  # what is left of a ramp is neither a tone nor a converter's step
-        turns = float(channel.values[-1] - channel.values[0]) / (2 * np.pi)
-        seconds = max(values.size - 1, 1) / record.sampling_rate
-        return f"{said}, {turns:.4g} turns, on average {60 * turns / seconds:.5g} rpm"
+        return f"{said}, {_turning(channel.values / (2 * np.pi), record.sampling_rate)}"
     said += f", offset (mean) {_mean(values):.5g}"
     is_difference = channel.name == "transmission_error" and FROM_ENCODERS in record.notes
     step = 0.0 if is_difference else step_of(values)  # what the steps of two encoders divide by is no step of either
     noise = _noise(values, spectrum, step, record.sampling_rate)
     datum = "" if channel.datum == "absolute" else ", datum arbitrary"
     return f"{said}{datum}{', ' if noise else ''}{noise}"
+
+
+def _turning(turns: np.ndarray, rate: float) -> str:
+    """How far and how fast a shaft turns; where its speed changes, that of the slowest and the fastest part too."""
+    said = f"{turns[-1] - turns[0]:.4g} turns, on average {_rpm(turns, rate):.5g} rpm"
+    if turns.size < FEWEST:
+        return said
+    parts = [_rpm(part, rate) for part in np.array_split(turns, PARTS)]
+    if np.ptp(parts) <= STEADY * max(np.abs(parts)):
+        return said
+    return f"{said}, its tenths between {min(parts):.4g} and {max(parts):.4g} rpm"
+
+
+def _rpm(turns: np.ndarray, rate: float) -> float:
+    return 60 * rate * float(turns[-1] - turns[0]) / max(turns.size - 1, 1)
 
 
 def _findings(record: Record) -> Iterator[str]:

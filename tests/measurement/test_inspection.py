@@ -36,6 +36,14 @@ def test_what_coasts_down_or_runs_up_is_strongest_nowhere(coasting):
     assert spectrum_of(coasting + np.sin(2 * np.pi * 3 * T) + noise, RATE).strongest == pytest.approx(3, abs=0.2)
 
 
+def test_noise_is_strongest_nowhere_and_a_tone_below_it_is_somewhere():
+    time = np.arange(6000) / RATE
+    named = [spectrum_of(RNG(seed).normal(size=6000), RATE).strongest for seed in range(40)]
+    assert sum(name is not None for name in named) <= 2
+    tone = 0.3 * np.sin(2 * np.pi * 13.3 * time)
+    assert spectrum_of(tone + RNG(1).normal(size=6000), RATE).strongest == pytest.approx(13.3, abs=0.1)
+
+
 def test_a_record_too_short_for_a_floor_has_none():
     assert spectrum_of(np.arange(63.0)) is None
 
