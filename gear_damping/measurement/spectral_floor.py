@@ -77,11 +77,19 @@ def spectrum_of(values: NDArray[np.float64], rate: float = 1.0) -> Spectrum | No
     return Spectrum(np.fft.rfftfreq(length, 1 / rate), density, len(segments), strongest)
 
 
-def _strongest(values: NDArray[np.float64]) -> int:
-    """In periods of all the values, without the line through them; 0 where noise has as high a one (Fisher 1929)."""
+def _strongest(values: NDArray[np.float64]) -> float:
+    """In periods of all the values, without the line through them; 0 where noise has as high a one (Fisher 1929).
+
+    Between the lines by the parabola through the logarithms of the three highest: to a twentieth of their distance.
+    """
     place = np.linspace(-1.0, 1.0, values.size)
     centred = values - values.mean()
     level = centred - place * (centred @ place) / (place @ place)
-    power = np.abs(np.fft.rfft(level * np.hanning(values.size)))[1:] ** 2
-    highest = int(np.argmax(power))
-    return 1 + highest if power[highest] > np.log(power.size / _CHANCE) * power.mean() else 0
+    power = np.abs(np.fft.rfft(level * np.hanning(values.size))) ** 2
+    highest = 1 + int(np.argmax(power[1:]))
+    if power[highest] <= np.log(power.size / _CHANCE) * power[1:].mean():
+        return 0.0
+    if highest in (1, power.size - 1):
+        return float(highest)
+    before, at, after = np.log(np.maximum(power[highest - 1 : highest + 2], np.finfo(float).tiny))
+    return highest + 0.5 * (before - after) / (before - 2 * at + after)

@@ -44,6 +44,13 @@ def test_noise_is_strongest_nowhere_and_a_tone_below_it_is_somewhere():
     assert spectrum_of(tone + RNG(1).normal(size=6000), RATE).strongest == pytest.approx(13.3, abs=0.1)
 
 
+@pytest.mark.parametrize("periods", [5.0, 5.3, 5.5, 5.8])
+def test_the_strongest_line_lies_between_those_of_a_short_record(periods):
+    time = np.arange(200) / RATE
+    tone = np.sin(2 * np.pi * periods / time.size * RATE * time + 0.4)
+    assert spectrum_of(tone, RATE).strongest == pytest.approx(periods * RATE / 200, abs=0.08 * RATE / 200)
+
+
 def test_a_record_too_short_for_a_floor_has_none():
     assert spectrum_of(np.arange(63.0)) is None
 
