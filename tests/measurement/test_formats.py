@@ -315,7 +315,7 @@ def test_settings_above_a_table_without_a_header_are_left_out(tmp_path):
     path.write_text("trigger_deg, rate, seconds\n90, 1000, 5\n" + "\n".join(map(str, values)))
     table = read_table(path)
     assert _column(table, 0) == values.tolist()
-    assert "2 line(s) before the header are left out" in table.notes[0]
+    assert "2 line(s) above the values are left out" in table.notes[0]
 
 
 def test_a_header_that_is_wider_than_its_table_is_no_such_setting(tmp_path):

@@ -34,7 +34,7 @@ def test_settings_with_more_cells_than_the_table_are_left_out(tmp_path, trigger)
     assert table.names == ("", "Velocity", "Torque")
     assert [table.unit(k) for k in range(3)] == ["ms", "rpm", "%"]
     assert [len(table.values(k)) for k in range(3)] == [60, 60, 60]
-    assert table.notes == ("run.csv: 5 line(s) before the header are left out",)
+    assert table.notes == ("run.csv: 5 line(s) above the values are left out",)
 
 
 def test_names_of_two_columns_stand_below_settings_of_a_name_and_a_number_each(tmp_path):
@@ -115,7 +115,7 @@ def test_a_row_of_units_and_names_below_generic_names_is_read(tmp_path):
     assert [table.unit(k) for k in range(6)] == ["ms", None, "%", None, None, None]
     assert inspect_table(table).rate == pytest.approx(1000.0)
     assert table.notes == (
-        "run.csv: 2 line(s) before the header are left out",
+        "run.csv: 2 line(s) above the values are left out",
         "run.csv: of two rows of names the lower one gives units, 'Servo motor speed' for 'Analog 1', 'Torque (%)' for "
         "'Analog 2', 'Torque' for 'Digital 1'; left out of it: Not selected",
     )
@@ -144,7 +144,7 @@ def test_lines_of_settings_above_a_definition_of_the_columns_are_no_values(tmp_p
 def test_lines_of_settings_that_define_no_column_are_counted_once(tmp_path):
     table = table_of(tmp_path, ["MIN=0\t-0.4", "MAX=60\t0.4", *rows(30, 2, "\t")])
     assert table.names == ("", "")
-    assert table.notes == ("run.csv: 2 line(s) before the header are left out",)
+    assert table.notes == ("run.csv: 2 line(s) above the values are left out",)
 
 
 @pytest.mark.parametrize("above", [["12.5", "3", "0.001"], ["12.5", "3", "0.001", "7", "1"], ["12.5,3", "7", "1"]])
@@ -152,14 +152,14 @@ def test_numbers_above_the_names_that_are_fewer_than_the_columns_are_no_values(t
     table = table_of(tmp_path, [*above, "time,left,right", *rows(30, 3, ",")])
     assert table.names == ("time", "left", "right")
     assert len(table.values(0)) == 30
-    assert table.notes == (f"run.csv: {len(above)} line(s) before the header are left out",)
+    assert table.notes == (f"run.csv: {len(above)} line(s) above the values are left out",)
 
 
 def test_names_with_blanks_between_them_stand_above_rows_with_tabs(tmp_path):
     assert table_of(tmp_path, ["t       y", *rows(30, 2, "\t")]).names == ("t", "y")
     titled = table_of(tmp_path, ["swing of the spring", *rows(30, 2, "\t")])
     assert titled.names == ("", "")
-    assert "1 line(s) before the header" in titled.notes[0]
+    assert "1 line(s) above the values" in titled.notes[0]
 
 
 def test_channels_that_an_oscilloscope_numbers_have_the_units_below(tmp_path):
@@ -396,7 +396,7 @@ def test_what_a_column_is_is_seen_by_its_name_before_a_unit_of_several_factors(t
 def test_names_may_be_parted_by_another_sign_than_the_values_below(tmp_path, title, names, between, sign):
     table = table_of(tmp_path, [title, between.join(names), *rows(30, len(names), sign)])
     assert table.names == names
-    assert table.notes[0] == "run.csv: 1 line(s) before the header are left out"
+    assert table.notes[0] == "run.csv: 1 line(s) above the values are left out"
 
 
 def test_a_title_of_as_many_words_as_columns_names_none_by_signs_alone(tmp_path):

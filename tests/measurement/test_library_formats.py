@@ -129,7 +129,7 @@ def test_titles_before_a_header_and_a_row_of_units_are_understood(tmp_path):
     assert table.names == ("t", "x", "T1")
     assert [table.unit(k) for k in range(3)] == ["s", "um", "N*m"]
     assert table.values(1).tolist() == [1.5, 2.5]
-    assert table.notes[0] == "a.txt: 2 line(s) before the header are left out"
+    assert table.notes[0] == "a.txt: 2 line(s) above the values are left out"
 
 
 def test_faults_are_named_by_their_line_below_titles_comments_and_blank_lines(tmp_path):

@@ -24,7 +24,7 @@ def test_a_title_and_a_number_of_its_own_stand_above_a_table(tmp_path):
     assert found.names == ("", "", "")
     np.testing.assert_allclose(found.values(0), TIME)
     assert found.notes == (
-        "a.txt: 2 line(s) before the header are left out",
+        "a.txt: 2 line(s) above the values are left out",
         "a.txt: '29.2' alone in a line below the title is taken for no value",
     )
 

@@ -51,7 +51,7 @@ def test_lines_above_the_name_are_left_out(setting, head, tmp_path):
     found = table(tmp_path, f"{setting}\n{head}\n")
     assert (found.names, found.unit(0)) == ((head,), "mm")
     np.testing.assert_allclose(found.values(0), MOTION, atol=1e-6)
-    assert found.notes == ("a.csv: 1 line(s) before the header are left out",)
+    assert found.notes == ("a.csv: 1 line(s) above the values are left out",)
     assert found.stated_rate == ((setting.split(" =")[0].split(":")[0], 1000.0) if "1000" in setting else None)
 
 

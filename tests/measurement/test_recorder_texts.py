@@ -32,7 +32,7 @@ def test_a_recorder_that_leaves_the_cells_under_its_settings_empty(tmp_path):
     np.testing.assert_allclose(found.values(1), MOTION, atol=1e-6)
     np.testing.assert_allclose(found.values(2), MOTION**2, atol=1e-6)
     assert found.stated_rate == ("SampleRate", RATE)
-    assert found.notes == ("a.csv: 9 line(s) before the header are left out",)
+    assert found.notes == ("a.csv: 9 line(s) above the values are left out",)
 
 
 def test_a_recorder_of_two_rates_states_none(tmp_path):

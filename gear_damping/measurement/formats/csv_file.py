@@ -92,7 +92,7 @@ def read(path: Path, max_bytes: int) -> Table:
     above += [] if scope is None else scope[2]
     table.stated_rate = stated_rate(above, decimal=decimal)
     table.unread_rate = "" if table.stated_rate else unread_rate(above, decimal)
-    notes = [f"{header.skipped} line(s) before the header are left out"] if header.skipped else []
+    notes = [f"{header.skipped} line(s) above the values are left out"] if header.skipped else []
     notes += [*left_above(above), header.says]
     if blocks:
         lines_of = [line for line, _ in _values(text, first_line)]

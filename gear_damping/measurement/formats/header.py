@@ -54,7 +54,7 @@ class Header:
         names: One per column, () where the table has no header.
         units: The row of units below the names, () where there is none.
         first: The index of the first row of values among the rows that were looked at.
-        skipped: The rows before the header.
+        skipped: The rows above the values that are no names and no units.
         says: What is to be noted of it.
         others: Rows of texts beside that of names, a cell for each column: by these a column may be asked for too.
     """
