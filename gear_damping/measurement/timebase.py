@@ -170,6 +170,7 @@ def _refuse_repeated_or_backward(
                 rule += f", {(steps.size + 1) // (steps.size + 1 - where.size)} samples at each on average"
                 rule += f"; {shared.says}" if shared else ""
                 remedy = "give sampling_rate instead of the time column, whose stamps are rounded or of whole packets"
+                remedy += f"; about {steps.size / steps.sum():.3g} Hz by them" if steps.sum() > 0 else ""
             problems.append(Problem(key, rule, remedy=remedy, source=source))
     if problems:
         raise InputError(problems)

@@ -37,6 +37,7 @@ def test_where_no_round_rate_is_told_both_readings_and_its_bounds_are_said():
     said = str(caught.value)
     assert "rounded to 0.1 s they may stand for any even rate from 103." in said
     assert "give sampling_rate instead of the time column, whose stamps are rounded or of whole packets" in said
+    assert "about 103 Hz by them" in said
 
 
 def test_packets_of_unequal_length_are_no_even_grid():
