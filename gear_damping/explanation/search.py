@@ -50,10 +50,13 @@ def _or_before(state: State) -> State:
     """The state, or one before it whose causes are no more, or a single one, leave less and are told from none.
 
     Second thoughts may lead away: of two causes that take nearly all together one may turn out to be of no known size,
-    and the other is then less than what had been found at first.
+    and the other is then less than what had been found at first. What had run into a bound stood in for something: it
+    is better than no cause, and than no other.
     """
     bench, most = state.bench, max(len(state.accepted), 1)
     better = [one for one in state.passed if len(one.accepted) <= most and _leaves_less(one, state)]
+    if state.accepted:
+        better = [one for one in better if not any(map(one.is_at_bound, one.accepted))]
     for one in sorted(better, key=lambda one: bench.excess(one.outcome).percent):
         if told(one).names == one.names:
             bench.log(f"{' and '.join(sorted(one.names))} leave less than what came later")

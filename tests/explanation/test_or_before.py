@@ -12,6 +12,7 @@ from gear_damping.explanation.state import State
 from tests.explanation.decisions.made_up import bench, left, outcome
 
 UNTOLD = "of no known size"
+AT_BOUND = "at a bound"
 
 
 def states(*found):
@@ -29,6 +30,7 @@ def chosen(found, is_as_good=False):
     with (
         patch.object(search, "told", kept),
         patch.object(type(last.bench), "is_as_good", lambda *_: is_as_good),
+        patch.object(State, "is_at_bound", lambda _, cause: cause.name == AT_BOUND),
     ):
         return [cause.name for cause in search._or_before(last).accepted]
 
@@ -42,6 +44,9 @@ def chosen(found, is_as_good=False):
         ([(["a"], 1.4), ([], 9.0)], ["a"]),  # one is better than none
         ([([UNTOLD], 1.0), (["a"], 2.0), (["b"], 4.0)], ["a"]),
         ([([UNTOLD], 1.0), (["b"], 4.0)], ["b"]),
+        ([([AT_BOUND], 1.0), (["b"], 4.0)], ["b"]),
+        ([([AT_BOUND], 1.0), (["a"], 2.0), (["b"], 4.0)], ["a"]),
+        ([([AT_BOUND], 1.0), ([], 4.0)], [AT_BOUND]),
     ],
 )
 def test_what_leaves_least_of_no_more_causes_is_taken(found, named):
