@@ -23,6 +23,7 @@ from gear_damping.measurement.fitted_twice import with_what_is_fitted_twice
 from gear_damping.measurement.formats.registry import MAX_BYTES, readers
 from gear_damping.measurement.own_system import own_systems
 from gear_damping.measurement.record import Finding, Measurement, Quantity, Record
+from gear_damping.measurement.record_checks import oversampled_alike
 from gear_damping.own_files import plugin_paths
 from gear_damping.schema.values import Problems
 
@@ -152,7 +153,7 @@ def _loaded(content: object, path: Path, max_bytes: int | None, plugins: Sequenc
     _refuse_unseen_spring(parameters.get("stiffness"), records, source)
     _refuse_longer_than_records(plan, records, source)
     driven = _free(_of_one_force(_overdamped(records, parameters), parameters.get("stiffness")))
-    kept, own_system = _compared(driven), systems.get(plan.system)
+    kept, own_system = oversampled_alike(_compared(driven)), systems.get(plan.system)
     found = Measurement(plan.system, parameters, kept, path.resolve(), plan.segment_s, own_system)
     return replace(found, records=with_what_is_fitted_twice(kept, found.base.responses))
 

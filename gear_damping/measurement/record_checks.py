@@ -9,7 +9,7 @@ decide.
 What was recorded beside a response and is not compared with a simulation is said, so that nobody waits for it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -28,6 +28,7 @@ WHOLE_SPEEDS = ("pinion_speed", "gear_speed")  # hold the rotation, beside which
 NEVER_STRAIGHT = ("displacement", "transmission_error", "acceleration")  # a speed may rise evenly
 STRAIGHT, FEWEST_OF_A_LINE = 1e-6, 16  # of its range; samples: fewer steps of a converter may lie on a line
 MOST_NOISE = 30.0  # times what a channel holds: no guess of a noise is so far off, and a wrong unit is 1000 times
+OVERSAMPLED = "oversampled"
 SAMPLES_PER_PERIOD = 100  # of the fastest content; more only slow the work
 _CONTENT = 0.999  # share of the energy that counts as content
 _FEWEST_SWINGS = 8  # through its mean: what creeps back to zero passes that once
@@ -253,7 +254,18 @@ def _oversampled(record: Record) -> Finding | None:
         f"99.9 % of the energy lies below {fastest:.3g} Hz, so that {record.sampling_rate:.4g} Hz "
         "is far more than is needed; resample: {value: …, unit: Hz} saves time"
     )
-    return Finding("oversampled", message, severity="note")
+    return Finding(OVERSAMPLED, message, severity="note")
+
+
+def oversampled_alike(records: Sequence[Record]) -> tuple[Record, ...]:
+    """The records, oversampled where all of their rate are: who follows the note for some of them has two rates."""
+    said = {record.name for record in records for finding in record.findings if finding.kind == OVERSAMPLED}
+    needed = {record.sampling_rate for record in records if record.name not in said}
+    return tuple(_without(OVERSAMPLED, record) if record.sampling_rate in needed else record for record in records)
+
+
+def _without(kind: str, record: Record) -> Record:
+    return replace(record, findings=tuple(finding for finding in record.findings if finding.kind != kind))
 
 
 def _beyond_the_band(record: Record) -> Iterator[Finding]:

@@ -229,6 +229,13 @@ def test_oversampling_is_a_note(bench):
     assert (finding.kind, finding.severity) == ("oversampled", "note")
 
 
+def test_a_record_is_not_oversampled_beside_one_of_its_rate_that_is_not(bench):
+    bench.add_record(file="run_2.csv")
+    bench.write_csv("run_2.csv")
+    _errors(bench)[:] = 8 + 2 * np.sin(2 * np.pi * 100 * bench.columns["t"])
+    assert "oversampled" not in [finding.kind for finding in bench.load().findings]
+
+
 def test_what_answers_slowly_to_a_fast_load_is_not_oversampled(bench):
     _errors(bench)[:] = 8 + 2 * np.sin(2 * np.pi * 100 * bench.columns["t"])
     bench.columns["T1"] = 150 + 10 * np.sin(2 * np.pi * 900 * bench.columns["t"])
