@@ -15,7 +15,7 @@ from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.casing.heard import is_casing
 from gear_damping.explanation.casing.report_fields import CasingStudy, explain_casing
 from gear_damping.explanation.evidence.data_faults import data_faults, mesh_order_faults
-from gear_damping.explanation.evidence.excess import ac_energy
+from gear_damping.explanation.evidence.excess import ac_energy, is_mostly_left
 from gear_damping.explanation.evidence.noise import NoiseLevel, Scatter, noise_of, weighted
 from gear_damping.explanation.evidence.records import Evidence, evidence_of
 from gear_damping.explanation.evidence.stated_speed import stated_speed_faults
@@ -302,8 +302,7 @@ def best_is_lost(found: State) -> bool:
 
 def _is_lost(residual: Tensor, record: FitRecord, evidence: Evidence) -> bool:
     share = evidence.settings.lost_share
-    noise = len(residual) * (evidence.noise / record.weight) ** 2
-    if float(residual.square().sum()) - noise > share * (ac_energy(record) - noise):
+    if is_mostly_left(residual, record, evidence.noise, share):
         return True
     for left, moved in zip(residual.chunk(STRETCHES), record.stacked.chunk(STRETCHES), strict=True):
         motion = float((moved - moved.mean()).square().sum())

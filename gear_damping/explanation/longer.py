@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from math import ceil
 
-from gear_damping.explanation.evidence.excess import ac_energy
+from gear_damping.explanation.evidence.excess import is_mostly_left
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.search import search
 from gear_damping.explanation.state import State
@@ -56,6 +56,6 @@ def _taken(state: State) -> float:
 
 def _loses_any(followed: Outcome, bench: Bench) -> bool:
     """Whether a model leaves more than half of a record: one that follows all has found where small errors lead."""
-    share = bench.settings.lost_share
+    share, noise = bench.settings.lost_share, bench.evidence.noise
     pairs = zip(followed.fit_residuals, bench.evidence.fitted, strict=True)
-    return any(float(residual.square().sum()) > share * ac_energy(record) for residual, record in pairs)
+    return any(is_mostly_left(residual, record, noise, share) for residual, record in pairs)

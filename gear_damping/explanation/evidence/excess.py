@@ -94,3 +94,16 @@ def ac_energy(record: FitRecord) -> float:
         about = [about_its_line(values[a:b]) for a, b in pieces] if channel.drifts else [values - values.mean()]
         energy += sum(float(one.square().sum()) for one in about)
     return energy
+
+
+def is_mostly_left(residual: Tensor, record: FitRecord, noise: float, share: float) -> bool:
+    """Whether a model leaves more than a share of what a record holds beyond its noise.
+
+    Args:
+        residual: (n,) weighted residuals.
+        record: What they are of.
+        noise: Its standard deviation where the weight is one.
+        share: Of the variance.
+    """
+    of_noise = len(residual) * (noise / record.weight) ** 2
+    return float(residual.square().sum()) - of_noise > share * (ac_energy(record) - of_noise)
