@@ -469,7 +469,8 @@ def _whole(column: Column) -> NDArray[np.float64]:
 
 
 def _step_of(values: NDArray[np.float64]) -> float:
-    """The quantisation step; none of values that go on by one amount, which is their speed and no converter's."""
+    """The quantisation step; of values that go on with every sample that of their advance, which is their speed."""
     advance = np.diff(values)
     is_ramp = advance.size and np.ptp(advance) <= _EVEN * np.abs(advance).max()
-    return 0.0 if is_ramp else step_of(values)
+    goes_on = advance.size and (advance.min() > 0 or advance.max() < 0)
+    return 0.0 if is_ramp else step_of(advance if goes_on else values)

@@ -17,6 +17,7 @@ from gear_damping.config.shown import shown
 from gear_damping.measurement.column_kinds import CONSTANT, ELSEWHERE
 from gear_damping.measurement.encoders import FROM_ENCODERS
 from gear_damping.measurement.files import UNKNOWN
+from gear_damping.measurement.foretold import natural_frequency, of_record
 from gear_damping.measurement.formats.registry import read_table, readers
 from gear_damping.measurement.guessing import Guess, guessed
 from gear_damping.measurement.inspection import Column, Inspection, clock_of
@@ -217,6 +218,8 @@ def _declared(measurement: Measurement, folder: RunFolder) -> dict[str, Any]:
     curves: dict[tuple[str, str], list[Curve]] = {}
     for record in measurement.records:
         own = [*_record_lines(record)]
+        if told := of_record(measurement, record):
+            own.append(f"    by what is stated {told}")
         lines += own
         said: list[tuple[str, str]] = []
         for channel in record.channels.values():
@@ -254,6 +257,8 @@ def _measurement_lines(measurement: Measurement) -> Iterator[str]:
     yield f"{measurement.source.name}: {measurement.system}, {len(measurement.records)} records"
     for name, quantity in measurement.parameters.items():
         yield f"  {name}: {_quantity(quantity)}"
+    if frequency := natural_frequency(measurement):
+        yield f"  natural frequency, by these: {frequency:.4g} Hz"
     for role, word in (("fit", "fitted"), ("holdout", "held out"), ("reference", "compared with")):
         named = [record.name for record in measurement.with_role(role)]
         if named:

@@ -65,6 +65,12 @@ def test_offset_step_and_constant_are_seen(tmp_path):
     assert [one.reference for one in found.measured] == ["x", "y"]
 
 
+@pytest.mark.parametrize(("counts", "unit"), [(2000, 1.0), (2000, 0.18)])
+def test_the_step_of_what_turns_by_many_with_every_sample_is_one_of_its_counter(counts, unit, tmp_path):
+    turned = np.floor(counts * (3 * T + 0.002 * np.sin(40 * T)))
+    assert column(inspected(tmp_path, time=T, x=unit * turned), "x").step == pytest.approx(unit, rel=1e-6)
+
+
 def test_groups_with_members_of_the_same_names_are_records_of_their_own(tmp_path):
     with h5py.File(tmp_path / "campaign.h5", "w") as file:
         for group, rows in (("low", 900), ("high", 1000), ("up", 1000)):

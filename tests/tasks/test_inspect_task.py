@@ -180,6 +180,7 @@ def test_a_yaml_is_told_with_roles_channels_rates_conditions_findings_and_segmen
         "measurement.yaml: oscillator, 2 records", "stiffness: 355 1/s^2 ± 2 %", "fitted: a", "held out: b",
         "segments of exactly 0.5 s", "record 'a', fit: run.csv, 600 samples, 500 Hz, 1.198 s from 0 s on",
         "force: constant, 3 N*m", "displacement: ", "rad, offset (mean)", "datum arbitrary", "data problem: clipped: ",
+        "natural frequency, by these: 2.999 Hz",
     ):  # fmt: skip
         assert words in text
     assert path.read_bytes() == before

@@ -1,0 +1,78 @@
+"""What the stated figures of a rig foretell: how fast it swings, and of a gear pair how its teeth mesh and give way."""
+
+from collections.abc import Mapping
+from math import pi
+
+import numpy as np
+
+from gear_damping.measurement.angular_error import base_radius
+from gear_damping.measurement.record import Measurement, Quantity, Record
+from gear_damping.units import parse_unit
+
+Stated = Mapping[str, Quantity]
+
+INERTIAS = {"pinion": "inertia_pinion", "gear": "inertia_gear"}
+RESPONSE = "transmission_error"
+
+
+def natural_frequency(measurement: Measurement) -> float | None:
+    """Hz, of small motion; None where the file does not state enough."""
+    stated = measurement.parameters
+    if spring := stated.get("stiffness"):  # over the mass
+        return spring.value**0.5 / (2 * pi) or None
+    stiffness, mass = mean_stiffness(stated), equivalent_mass(stated)
+    return (stiffness / mass) ** 0.5 / (2 * pi) if stiffness and mass else None
+
+
+def mean_stiffness(stated: Stated) -> float | None:
+    """N/m, over a period of the mesh."""
+    known = [stated.get(name) for name in ("mesh_stiffness_max", "mesh_stiffness_min", "contact_ratio")]
+    if not all(known):
+        return None
+    most, least, ratio = (one.value for one in known)
+    return least + (ratio - 1) * (most - least)
+
+
+def equivalent_mass(stated: Stated) -> float | None:
+    """Kg, along the line of action."""
+    if whole := stated.get("equivalent_mass"):
+        return whole.value
+    radii, inertias = _radii(stated), [stated.get(name) for name in INERTIAS.values()]
+    if not radii or not all(inertias):
+        return None
+    return 1 / sum(radius**2 / inertia.value for radius, inertia in zip(radii, inertias, strict=True))
+
+
+def of_record(measurement: Measurement, record: Record) -> str:
+    """How often teeth mesh in a record, and how far its mean torque presses them; empty where that is not known."""
+    stated = measurement.parameters
+    speed, teeth = _mean(record, "pinion_speed"), stated.get("n_teeth_pinion")
+    said = []
+    if speed and teeth:
+        said.append(f"teeth mesh at {abs(speed) * teeth.value / (2 * pi):.4g} Hz on average")
+    torque, stiffness, radii = _mean(record, "pinion_torque"), mean_stiffness(stated), _radii(stated)
+    if torque and stiffness and radii:
+        channel = record.channels.get(RESPONSE)
+        unit = channel.declared_unit if channel else "um"
+        pressed = abs(torque) / radii[0] / stiffness / parse_unit(unit).factor
+        said.append(f"the mean torque presses them by {pressed:.3g} {unit}")
+    return ", ".join(said)
+
+
+def _radii(stated: Stated) -> tuple[float, ...]:
+    """m, of the base circles of pinion and gear."""
+    known = [stated.get(name) for name in ("n_teeth_pinion", "n_teeth_gear", "module", "pressure_angle")]
+    if not all(known):
+        return ()
+    pinion, gear, module, angle = (one.value for one in known)
+    return base_radius(pinion, module, angle), base_radius(gear, module, angle)
+
+
+def _mean(record: Record, name: str) -> float | None:
+    """Of a channel or a condition, in SI; the speed that an angle has on average."""
+    if name in record.channels:
+        return float(np.mean(record.channels[name].values))
+    if name == "pinion_speed" and "pinion_angle" in record.channels:
+        angle = record.channels["pinion_angle"].values
+        return float(angle[-1] - angle[0]) * record.sampling_rate / max(angle.size - 1, 1)
+    return record.conditions[name].value if name in record.conditions else None
