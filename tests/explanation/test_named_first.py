@@ -74,3 +74,10 @@ def test_what_contains_one_that_does_as_well_is_no_rival_of_it():
     names = ["coulomb_friction", "asymmetric_friction", POWER, POWER]
     assert bench(SearchSettings()).rivals("coulomb_friction", names) == (POWER,)
     assert bench(SearchSettings()).rivals("asymmetric_friction", names) == ("coulomb_friction", POWER)
+
+
+def test_what_is_no_candidate_any_more_is_no_rival():
+    made = bench(SearchSettings())
+    left = {name: kind for name, kind in made.evidence.library.items() if name != "coulomb_friction"}
+    made.evidence.library = left
+    assert made.rivals("cubic_stiffness", ["coulomb_friction", POWER]) == (POWER,)

@@ -257,9 +257,12 @@ class Bench(Comparison):
         return plain, self.rivals(plain.name, [f.name for f in kept if f.name != first.name])
 
     def rivals(self, name: str, others: Iterable[str]) -> tuple[str, ...]:
-        """The other effects of several, each once, but for what contains this one, of which it is the simpler form."""
-        library = self.evidence.library
-        return tuple(dict.fromkeys(one for one in others if one != name and library[one].cause.simpler != name))
+        """The other effects of several, each once, but for what contains this one, of which it is the simpler form.
+
+        Nor what is no candidate any more, as an effect whose size was not told from none.
+        """
+        known = ((one, self.evidence.library.get(one)) for one in others if one != name)
+        return tuple(dict.fromkeys(one for one, kind in known if kind is not None and kind.cause.simpler != name))
 
     def _sized(self, fits: Sequence[Refit]) -> Sequence[Refit]:
         """Those of whose size the records tell anything; all where that is none of several.
