@@ -7,7 +7,9 @@ import torch
 
 from gear_damping.explanation.answer import report_fields
 from gear_damping.explanation.evidence.noise import NoiseLevel
+from gear_damping.explanation.model import contradicted
 from gear_damping.explanation.model.contradicted import contradicts_stated, noise_above
+from gear_damping.identification.observation import Known
 from gear_damping.identification.oscillator.linear_model import uncertain_parameter
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.physics.systems.gear_pair import GearPair
@@ -48,6 +50,18 @@ def test_what_a_calibration_moved_far_from_what_is_stated_is_said_by_the_key_of_
     said = contradicts_stated(outcome, evidence)
     assert said.startswith("mesh_stiffness_max lies 10 of its stated uncertainties away") is is_said
     assert bool(said) is is_said
+
+
+@pytest.mark.parametrize(("mean", "is_said"), [(3.2e8, False), (4.2e8, True)])
+def test_beside_a_free_shape_the_mean_of_the_stiffness_is_held_against_what_is_stated(mean, is_said, monkeypatch):
+    monkeypatch.setattr(contradicted, "linear_of", lambda _: (1.0, 0.0, mean))
+    maximum = FreeParameter("fourier_mesh_stiffness.maximum", 4e8, logarithmic=True, deviation=0.05, expected=4e8)
+    shape = FreeParameter("mesh_stiffness_shape.in_phase[0]", 0.0)
+    fitted = SimpleNamespace(shared=torch.tensor([0.3, 0.0]))
+    outcome = SimpleNamespace(problem=SimpleNamespace(free=[maximum, shape]), fitted=fitted)
+    values = {"mesh_stiffness_max": 4e8, "mesh_stiffness_min": 2e8, "contact_ratio": 1.5}  # 3e8 on average
+    evidence = SimpleNamespace(known=Known(values, {"mesh_stiffness_max": 0.05}, GearPair))
+    assert bool(contradicts_stated(outcome, evidence)) is is_said
 
 
 @pytest.mark.parametrize(

@@ -8,19 +8,40 @@ import torch
 from gear_damping.explanation.evidence.noise import DECLARED, NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome
-from gear_damping.explanation.model.nominal_gear_pair import FLAT
+from gear_damping.explanation.model.linear import linear_of
+from gear_damping.explanation.model.nominal_gear_pair import FLAT, MESH, SHAPE
+from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.measurement.record import Channel
 from gear_damping.physics.cause import SHAFTS
 
+WAVE = ("mesh_stiffness_max", "mesh_stiffness_min", "contact_ratio")
 CONTRADICTS = 5.0  # stated standard deviations: of one in two million statements that hold
 ABOVE = 3.0  # times what a model leaves, noise and all: a noise that is stated so large is another's
 
 
 def contradicts_stated(outcome: Outcome, evidence: Evidence) -> str:
-    """A sentence of what a model had to move far from what is stated, empty where it is all within its uncertainty."""
+    """A sentence of what a model had to move far from what is stated, empty where it is all within its uncertainty.
+
+    Beside a free shape of the mesh stiffness the corners of its ideal wave are nobody's figures: what ramps over a
+    third of a period, as wide helical teeth do, has the highest of them far above anything. The mean counts then.
+    """
     fitted = {FLAT.get(name, name): name for name in evidence.known.uncertainty}
+    if any(parameter.name.startswith(SHAPE) for parameter in outcome.problem.free) and _has_stated_mean(
+        linear_of(outcome)[2], evidence.known
+    ):
+        fitted = {name: key for name, key in fitted.items() if not name.startswith(MESH)}
     return contradicted(outcome.problem.free, outcome.fitted.shared.tolist(), fitted) or ""
+
+
+def _has_stated_mean(stiffness: float, known: Known) -> bool:
+    """Whether a mean mesh stiffness in N/m is the stated one, within what is said of the larger and the smaller one."""
+    if not all(name in known.values for name in WAVE):
+        return False
+    most, least, ratio = (known.values[name] for name in WAVE)
+    stated = least + (ratio - 1) * (most - least)
+    uncertainty = max(known.uncertainty.get(name, 0.0) for name in WAVE)
+    return abs(stiffness / stated - 1) <= CONTRADICTS * uncertainty
 
 
 def contradicted(free: Sequence[FreeParameter], coordinates: Sequence[float], stated: Mapping[str, str]) -> str | None:
