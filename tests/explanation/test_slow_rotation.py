@@ -6,14 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
+import yaml
 from closed_forms import free_decay
 from numpy.polynomial.legendre import legval
 
+from gear_damping.explanation.evidence.records import evidence_of
 from gear_damping.explanation.evidence.slow_rotation import gear_ratio, with_slow_rotation
 from gear_damping.identification.output_error.least_squares import fit
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter, Observed, SlowChange
 from gear_damping.identification.output_error.segments import part
+from gear_damping.measurement.load import load_measurement
 from gear_damping.physics.effects.viscous_damping import ViscousDamping
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.oscillator import Oscillator
@@ -90,3 +93,24 @@ def test_a_channel_that_is_no_speed_and_a_rig_at_rest_have_none():
 def test_the_ratio_is_that_of_the_teeth():
     assert gear_ratio({"n_teeth_pinion": 17, "n_teeth_gear": 51}) == pytest.approx(1 / 3)
     assert gear_ratio({}) == 0.5
+
+
+@pytest.mark.parametrize("load", ["balanced", "held", {"column": "T2", "unit": "N*m"}])
+def test_measured_torques_tell_how_shafts_speed_up_but_for_their_noise(tmp_path, load):
+    time = np.arange(2000) / 20e3
+    columns = {"theta": 100 * time, "w2": 50 + 0.01 * np.sin(3000 * time), "T1": 20 + 0 * time, "T2": 40 + 0 * time}
+    columns |= {name: columns[name] + np.random.default_rng(1).normal(0, 1e-3, 2000) for name in ("T1", "T2", "w2")}
+    table = np.column_stack(list(columns.values()))
+    np.savetxt(tmp_path / "a.csv", table, delimiter=",", header=",".join(columns), comments="")
+    channels = {"sampling_rate": "20 kHz", "gear_torque": load}
+    for name, column, unit in (
+        ("pinion_angle", "theta", "rad"),
+        ("gear_speed", "w2", "rad/s"),
+        ("pinion_torque", "T1", "N*m"),
+    ):
+        channels[name] = {"column": column, "unit": unit}
+    parameters = {"n_teeth_pinion": 20, "n_teeth_gear": 40}
+    content = {"system": "gear_pair", "parameters": parameters, "records": [{"file": "a.csv", "channels": channels}]}
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(content))
+    record = evidence_of(load_measurement(tmp_path / "measurement.yaml")).records[0]
+    assert record.observed.slow.deviation == pytest.approx(1e-3 * 100 * 0.5, rel=1e-3)

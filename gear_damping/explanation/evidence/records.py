@@ -198,7 +198,7 @@ def evidence_of(measurement: Measurement, *, holds_out: bool = True) -> Evidence
     mode = "held" if any("gear_torque" in r.conditions for r, _ in records) else next(iter(modes), "balanced")
     if base.has(Trait.REST):
         require_alike([record for record, _ in records], str(measurement.source))
-    elif mode == "balanced":  # else torques tell how the shafts speed up
+    else:
         swaying = with_slow_rotation([record for record, _ in records], gear_ratio(known.values))
         records = [(record, role) for record, (_, role) in zip(swaying, records, strict=True)]
     declared = records if holds_out else [(record, role or "fit") for record, role in records]

@@ -1,7 +1,8 @@
 """How fast the shafts of a rig turn on the whole is no vibration, and no model of the mesh foretells it.
 
 A drive lets its speed sway by a ten-thousandth or so, in waves that are longer than a turn. In the speed of a shaft
-that is more than some vibrations are.
+that is more than some vibrations are. Where both torques are measured they tell how the shafts speed up, but for the
+noise and the zeros of their sensors, which add up.
 """
 
 from collections.abc import Mapping, Sequence
@@ -26,7 +27,7 @@ def with_slow_rotation(records: Sequence[FitRecord], gear_ratio: float) -> list[
     """Records of a gear pair whose shaft speeds change slowly by an unknown part of their own.
 
     Args:
-        records: Of a rig whose torques are not said to speed its shafts up.
+        records: Of a rig with shafts.
         gear_ratio: Teeth of the pinion over those of the gear.
     """
     turning = [(record, abs(record.conditions.get("pinion_speed", 0.0)) * min(gear_ratio, 1.0)) for record in records]
