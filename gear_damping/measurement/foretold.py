@@ -69,10 +69,10 @@ def _radii(stated: Stated) -> tuple[float, ...]:
 
 
 def _mean(record: Record, name: str) -> float | None:
-    """Of a channel or a condition, in SI; the speed that an angle has on average."""
-    if name in record.channels:
-        return float(np.mean(record.channels[name].values))
+    """In SI: of a speed that of the angle, else the stated one, beside which a channel may be about its mean."""
     if name == "pinion_speed" and "pinion_angle" in record.channels:
         angle = record.channels["pinion_angle"].values
         return float(angle[-1] - angle[0]) * record.sampling_rate / max(angle.size - 1, 1)
-    return record.conditions[name].value if name in record.conditions else None
+    if name in record.conditions:
+        return record.conditions[name].value
+    return float(np.mean(record.channels[name].values)) if name in record.channels else None

@@ -38,6 +38,15 @@ def test_a_gear_pair_is_foretold_by_its_figures(rig):
     assert said.endswith(" um")
 
 
+def test_a_speed_about_its_mean_is_not_the_mean(rig):
+    rig.columns["w1"] = 0.1 * np.sin(600 * rig.columns["t"])
+    del rig.channels["pinion_angle"], rig.channels["transmission_error"]
+    rig.channels["pinion_speed"] = {"column": "w1", "unit": "rad/s", "coupling": "AC"}
+    rig.record["conditions"] = {"pinion_speed": {"value": 1800, "unit": "rpm"}}
+    measurement = rig.load()
+    assert of_record(measurement, measurement.records[0]).startswith("teeth mesh at 540 Hz on average, ")
+
+
 @pytest.mark.parametrize("missing", ["contact_ratio", "mesh_stiffness_max"])
 def test_what_is_not_stated_is_not_foretold(missing, rig):
     del rig.content["parameters"][missing]
