@@ -297,7 +297,7 @@ def _record_lines(record: Record) -> Iterator[str]:
 
 
 def _channel(record: Record, channel: Channel, values: np.ndarray, spectrum: Spectrum | None) -> str:
-    said = f"{values.min() + 0.0:.5g} to {values.max() + 0.0:.5g} {channel.declared_unit}"  # no -0
+    said = f"{values.min() + 0.0:.5g} to {values.max() + 0.0:.5g}{_behind(channel.declared_unit)}"  # no -0
     if channel.name == "pinion_angle":  # what is left of a ramp is neither a tone nor a converter's step
         return f"{said}, {_turning(channel.values / (2 * np.pi), record.sampling_rate)}"
     said += f", offset (mean) {_mean(values):.5g}"
@@ -332,5 +332,9 @@ def _findings(record: Record) -> Iterator[str]:
 
 def _quantity(quantity: Any) -> str:
     known = f" ± {100 * quantity.uncertainty:g} %" if quantity.uncertainty else ""
-    unit = "" if quantity.unit == "1" else f" {quantity.unit}"
-    return f"{quantity.value:.6g}{unit}{known}"
+    return f"{quantity.value:.6g}{_behind(quantity.unit)}{known}"
+
+
+def _behind(unit: str) -> str:
+    """A unit as it stands behind a number."""
+    return "" if unit == "1" else f" {unit}"

@@ -188,6 +188,15 @@ def test_a_yaml_is_told_with_roles_channels_rates_conditions_findings_and_segmen
     assert not (tmp_path / "out" / "measurement.yaml").exists()
 
 
+def test_what_has_no_unit_is_told_without_one(tmp_path):
+    _csv(tmp_path / "run.csv")
+    channels = {"displacement": {"column": "angle (rad)"}, "force": {"column": "torque (N*m)", "unit": "1"}}
+    records = [{"file": "run.csv", "channels": {"time": {"column": "time (s)"}, **channels}}]
+    (tmp_path / "m.yaml").write_text(yaml.safe_dump({"system": "oscillator", "records": records}))
+    inspected(tmp_path / "m.yaml", tmp_path / "out")
+    assert "force: -2 to 2, offset (mean)" in (tmp_path / "out" / "inspection.txt").read_text()
+
+
 @pytest.mark.parametrize(
     ("name", "content", "words"),
     [
