@@ -11,7 +11,8 @@ from gear_damping.units import parse_unit
 
 Stated = Mapping[str, Quantity]
 
-INERTIAS = {"pinion": "inertia_pinion", "gear": "inertia_gear"}
+WAVE = ("mesh_stiffness_max", "mesh_stiffness_min", "contact_ratio")
+INERTIAS = ("inertia_pinion", "inertia_gear")
 RESPONSE = "transmission_error"
 
 
@@ -20,24 +21,27 @@ def natural_frequency(measurement: Measurement) -> float | None:
     stated = measurement.parameters
     if spring := stated.get("stiffness"):  # over the mass
         return spring.value**0.5 / (2 * pi) or None
-    stiffness, mass = mean_stiffness(stated), equivalent_mass(stated)
+    stiffness, mass = _stated_stiffness(stated), equivalent_mass(stated)
     return (stiffness / mass) ** 0.5 / (2 * pi) if stiffness and mass else None
 
 
-def mean_stiffness(stated: Stated) -> float | None:
-    """N/m, over a period of the mesh."""
-    known = [stated.get(name) for name in ("mesh_stiffness_max", "mesh_stiffness_min", "contact_ratio")]
-    if not all(known):
+def mean_stiffness(values: Mapping[str, float]) -> float | None:
+    """N/m, over a period of the mesh, of values in SI by the file's names; None where one of them is missing."""
+    if not all(name in values for name in WAVE):
         return None
-    most, least, ratio = (one.value for one in known)
+    most, least, ratio = (values[name] for name in WAVE)
     return least + (ratio - 1) * (most - least)
+
+
+def _stated_stiffness(stated: Stated) -> float | None:
+    return mean_stiffness({name: quantity.value for name, quantity in stated.items()})
 
 
 def equivalent_mass(stated: Stated) -> float | None:
     """Kg, along the line of action."""
     if whole := stated.get("equivalent_mass"):
         return whole.value
-    radii, inertias = _radii(stated), [stated.get(name) for name in INERTIAS.values()]
+    radii, inertias = _radii(stated), [stated.get(name) for name in INERTIAS]
     if not radii or not all(inertias):
         return None
     return 1 / sum(radius**2 / inertia.value for radius, inertia in zip(radii, inertias, strict=True))
@@ -50,7 +54,7 @@ def of_record(measurement: Measurement, record: Record) -> str:
     said = []
     if speed and teeth:
         said.append(f"teeth mesh at {abs(speed) * teeth.value / (2 * pi):.4g} Hz on average")
-    torque, stiffness, radii = _mean(record, "pinion_torque"), mean_stiffness(stated), _radii(stated)
+    torque, stiffness, radii = _mean(record, "pinion_torque"), _stated_stiffness(stated), _radii(stated)
     if torque and stiffness and radii:
         channel = record.channels.get(RESPONSE)
         unit = channel.declared_unit if channel else "um"

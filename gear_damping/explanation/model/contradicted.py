@@ -12,10 +12,10 @@ from gear_damping.explanation.model.linear import linear_of
 from gear_damping.explanation.model.nominal_gear_pair import FLAT, MESH, SHAPE
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FreeParameter
+from gear_damping.measurement.foretold import WAVE, mean_stiffness
 from gear_damping.measurement.record import Channel
 from gear_damping.physics.cause import SHAFTS
 
-WAVE = ("mesh_stiffness_max", "mesh_stiffness_min", "contact_ratio")
 CONTRADICTS = 5.0  # stated standard deviations: of one in two million statements that hold
 ABOVE = 3.0  # times what a model leaves, noise and all: a noise that is stated so large is another's
 
@@ -36,10 +36,9 @@ def contradicts_stated(outcome: Outcome, evidence: Evidence) -> str:
 
 def _has_stated_mean(stiffness: float, known: Known) -> bool:
     """Whether a mean mesh stiffness in N/m is the stated one, within what is said of the larger and the smaller one."""
-    if not all(name in known.values for name in WAVE):
+    stated = mean_stiffness(known.values)
+    if stated is None:
         return False
-    most, least, ratio = (known.values[name] for name in WAVE)
-    stated = least + (ratio - 1) * (most - least)
     uncertainty = max(known.uncertainty.get(name, 0.0) for name in WAVE)
     return abs(stiffness / stated - 1) <= CONTRADICTS * uncertainty
 
