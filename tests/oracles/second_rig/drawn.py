@@ -67,8 +67,15 @@ def _case(name: str, rng: Rng, seed: int) -> Case:
     noise = Noise(str(rng.choice([WHITE, WHITE, PINK, COLOURED])), float(rng.integers(24, 43)))
     case = Case(setting.rig, runs, sensor, writer, noise, Stream(seed, 0), "drawn", hidden, assembled=True)
     if name == "torque_ripple":
-        return replace(case, gear_torque="held")
+        return _rippled(case)
     return replace(case, declared=_declared(rng, setting.rig, hidden))
+
+
+def _rippled(case: Case) -> Case:
+    """The gear's torque stands where nothing shows how the shafts then speed up, and follows where a sensor would."""
+    if case.sensor.channel == "transmission_error" and not isinstance(case.writer, Encoders):
+        return replace(case, gear_torque="held")
+    return replace(case, hidden=replace(case.hidden, values={**case.hidden.values, "follows": True}))
 
 
 def _rig(rng: Rng) -> Rig:

@@ -141,9 +141,8 @@ def tabulated(
     phase = angles[0] * rig.teeth[0] / (2.0 * math.pi) - run.mesh_zero
     stiffness, force, error = mesh_stiffness(rig, phase), torque / rig.radii[0], np.zeros_like(phase)
     name, values = (hidden.name, hidden.values) if hidden else (None, {})
-    if name == "torque_ripple":  # the load of the gear stands: only the pinion's share of the ripple drives x
-        ripple = values["amplitude"] * np.cos(angles[0] + values["phase"])
-        force = force + rig.mass * rig.radii[0] / rig.inertias[0] * ripple
+    if name == "torque_ripple":
+        force = force + _pressed(rig, values) * values["amplitude"] * np.cos(angles[0] + values["phase"])
     elif name in ("pinion_eccentricity", "gear_eccentricity"):
         error = values["amplitude"] * np.cos(angles[name == "gear_eccentricity"] + values["phase"])
     elif name == "tooth_crack":  # of the gear: its own pair loses a share of its own stiffness
@@ -153,6 +152,15 @@ def tabulated(
         error = values["amplitude"] * own / stiffness
     rate = np.gradient(error, spacing) if np.any(error) else np.zeros_like(error)
     return Tables(stiffness, force, error, rate)
+
+
+def _pressed(rig: Rig, values: Mapping[str, float]) -> float:
+    """Force on x for each torque of a ripple / (1/m).
+
+    Where the load of the gear stands only the pinion's share of it drives x, and both shafts speed up, which a sensor
+    on a shaft would tell, and nothing here does. Where the gear's torque follows the whole ripple drives x alone.
+    """
+    return 1.0 / rig.radii[0] if values.get("follows") else rig.mass * rig.radii[0] / rig.inertias[0]
 
 
 def damping_force(rig: Rig, hidden: Hidden | None) -> Callable[[float], float]:

@@ -161,9 +161,8 @@ def _d09() -> Case:
         Table("mat", "w1"),
         Noise(WHITE, 36),
         _at(229021),
-        "torque of the motor, once a turn; that of the gear does not follow",
-        Hidden("torque_ripple", {"amplitude": 25.0, "phase": 1.4}),
-        gear_torque="held",
+        "torque of the motor, once a turn; that of the gear follows",
+        Hidden("torque_ripple", {"amplitude": 25.0, "phase": 1.4, "follows": True}),
     )
 
 
