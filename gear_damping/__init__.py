@@ -17,6 +17,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gear_damping.threads import settle_threads
+
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
@@ -38,6 +40,8 @@ if TYPE_CHECKING:
     from gear_damping.physics.systems.oscillator import Oscillator
     from gear_damping.simulation.driven import Driven
     from gear_damping.simulation.solver_settings import Solver
+
+settle_threads()
 
 # what is offered -> where it is, and what it is called there
 _PLACES = {

@@ -9,7 +9,6 @@ from gear_damping.tasks.wrong_declaration import WRONG_INPUT, answered
 
 def entry(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and end with its exit code."""
-    _wait_without_spinning()
     words = sys.argv[1:] if arguments is None else arguments
     try:
         code = _run(words)
@@ -26,15 +25,6 @@ def _run(words: Sequence[str]) -> int:
     from gear_damping.tasks.command import main
 
     return main(words)
-
-
-def _wait_without_spinning() -> None:
-    """Threads of PyTorch that wait for each other sleep, unless the user says otherwise.
-
-    OpenMP lets them spin. Where other processes hold the cores, that made a training with two threads 16 times slower
-    than this; it is read when PyTorch is loaded.
-    """
-    os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 
 if __name__ == "__main__":

@@ -1,13 +1,10 @@
 """What is answered without the libraries that simulate and learn: seen by which modules a fresh process has loaded."""
 
-import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-
-from gear_damping.__main__ import entry
 
 ROOT = Path(__file__).resolve().parents[2]
 HEAVY = ("torch", "lightning", "torchdiffeq")
@@ -128,16 +125,3 @@ def test_a_file_that_is_no_yaml_names_the_command_line_as_its_source(tmp_path):
     last, said = entered(["task=explain", f"measurement.path={tmp_path / 'b.yaml'}"])
     assert last == "code 1 hydra False"
     assert f"(from command line: measurement.path={tmp_path / 'b.yaml'})" in said
-
-
-@pytest.mark.parametrize(("given", "left"), [(None, "passive"), ("active", "active")])
-def test_threads_that_wait_sleep_unless_the_user_says_otherwise(given, left, monkeypatch):
-    """Spinning ones take the cores from whoever they wait for, on a machine that does something else too."""
-    monkeypatch.delenv("OMP_WAIT_POLICY", raising=False)
-    if given:
-        monkeypatch.setenv("OMP_WAIT_POLICY", given)
-    heard = []
-    monkeypatch.setattr("gear_damping.tasks.command.main", lambda words: heard.append(os.environ["OMP_WAIT_POLICY"]))
-    with pytest.raises(SystemExit):
-        entry(["task=identify"])
-    assert heard == [left]
