@@ -205,6 +205,11 @@ def parse_unit(text: str, key: str = "unit", source: str = "") -> Unit:
     return unit
 
 
+def behind(unit: str) -> str:
+    """A unit as it stands behind a number: nothing for what has none."""
+    return "" if unit == "1" else f" {unit}"
+
+
 def is_of_kind(text: str | None, plain: str) -> bool:
     """Whether a text names a unit of the kind of another one."""
     try:

@@ -28,7 +28,7 @@ from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.timebase import TimeBase
 from gear_damping.measurement.unit_conflicts import other_motion, unit_conflict
 from gear_damping.measurement.vocabulary import HOLDABLE, SHAFT_SPEEDS
-from gear_damping.measurement.wraps import begins_again, run_over, unwrapped
+from gear_damping.measurement.wraps import begins_again, refuse_other_turn, run_over, unwrapped
 from gear_damping.schema.values import Problems
 
 LOST = 0.1  # of a channel's variance, from which it is said that resampling took it
@@ -102,6 +102,7 @@ class Assembler:
         if not is_turned and (found := run_over(raw.values, plan.name, plan.column)):
             findings.append(found)
         if is_turned:
+            refuse_other_turn(raw.values / plan.sensor["gain"], raw.unit, f"{plan.key}.unit", self.source)
             values = unwrapped(values, turn, plan.name, notes)
         rounding = rounding_of(values) if record.plan.resample else 0.0
         switches = plan.name in HOLDABLE and _switches(raw, record)

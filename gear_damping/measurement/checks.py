@@ -19,6 +19,7 @@ from gear_damping.measurement.overflow import overflowed
 from gear_damping.measurement.record import Channel, Finding
 from gear_damping.measurement.resolution import step_of
 from gear_damping.measurement.vocabulary import INPUTS
+from gear_damping.units import behind
 
 _SAMPLES, _SHARE, _RATIO = 5, 1e-3, 6  # at the extreme: at least, of all samples, times those at the level beside it
 _HELD = 5e-3  # share of steps that are zero elsewhere, from which a signal holds its values
@@ -173,7 +174,7 @@ def _constant(channel: Channel) -> Finding | None:
     if np.ptp(channel.values) > 0:
         return None
     driven = channel.name in INPUTS or channel.name == "pinion_speed"
-    message = f"every sample of {channel.name} is {channel.values[0]:.6g} {channel.unit}"
+    message = f"every sample of {channel.name} is {channel.values[0]:.6g}{behind(channel.unit)}"
     message += "" if driven else "; check the cable and the column"
     severity = "note" if driven else "data_problem"
     return Finding("constant_channel", message, channel=channel.name, severity=severity)
@@ -190,8 +191,8 @@ def _marked(channel: Channel) -> Finding | None:
     if channel.name in INPUTS and values[where] == 0 and _is_one_end(at):  # not switched on yet, or off again
         return None
     message = (
-        f"{channel.name} is {values[where]:.6g} {channel.unit} at {count} samples, the first at {where}, and nowhere "
-        "else near it: a mark for a missing value; put what was measured there, or use slices beside it"
+        f"{channel.name} is {values[where]:.6g}{behind(channel.unit)} at {count} samples, the first at {where}, and "
+        "nowhere else near it: a mark for a missing value; put what was measured there, or use slices beside it"
     )
     return Finding("marked_values", message, channel=channel.name, sample=where)
 
@@ -213,7 +214,7 @@ def _spike(channel: Channel, strokes: NDArray[np.int64]) -> Finding | None:
     if strokes.size and np.min(np.abs(places[:, None] - strokes)) <= _WITH_A_STROKE:
         return None
     message = (
-        f"{channel.name} is {channel.values[places[0]]:.4g} {channel.unit} at sample {places[0]}, "
+        f"{channel.name} is {channel.values[places[0]]:.4g}{behind(channel.unit)} at sample {places[0]}, "
         f"{away[order[lone - 1]] / away[order[lone]]:.3g} times as far from its median as any other sample: a fault of "
         "the transmission or of the file; repair it there, or use slices beside it"
     )
@@ -237,6 +238,8 @@ def _strays(channel: Channel) -> Finding | None:
     at = np.flatnonzero((away > _STRAY * usual) & (away > _LEAST_STRAY * np.std(values)))
     at = at[(at >= half) & (at < values.size - half)]
     at = at[away[at] > _ALONE * np.abs(values[at + 1] - values[at - 1])]  # a motion may begin with a leap, and goes on
+    around = values[at[:, None] + [-2, -1, 1, 2]].T
+    at = at[(values[at] < around.min(0)) | (values[at] > around.max(0))]  # none that flickers between two levels
     if not 0 < at.size <= _MOST_STRAYS * values.size:
         return None
     falls = np.all(np.abs(values[at]) < np.abs(values[at - 1])) and not np.ptp(values[at])
@@ -245,8 +248,8 @@ def _strays(channel: Channel) -> Finding | None:
     places = ", ".join(map(str, at[:_LISTED])) + (" and others" if at.size > _LISTED else "")
     message = (
         f"{at.size} single sample(s) of {channel.name} lie far beside their neighbours, at {places} (the first "
-        f"{values[at[0]]:.4g} {channel.unit}): faults of the sensor or of the transmission; they count as they are. "
-        "Where stamps of time stand beside them, take their rows out of a copy of the file: the gaps are bridged"
+        f"{values[at[0]]:.4g}{behind(channel.unit)}): faults of the sensor or of the transmission; they count as they "
+        "are. Where stamps of time stand beside them, take their rows out of a copy of the file: the gaps are bridged"
     )
     return Finding("stray_samples", message, channel=channel.name, sample=int(at[0]), severity="note")
 
@@ -288,7 +291,7 @@ def _clipped(channel: Channel) -> Finding | None:
         if seen.max() > _BEYOND_RANGE * channel.range:
             return _beyond_range(channel, seen)
         if at.sum() > 1:
-            return _clipping(channel, at, f"at the sensor's range of {channel.range:.4g} {channel.unit}")
+            return _clipping(channel, at, f"at the sensor's range of {channel.range:.4g}{behind(channel.unit)}")
     return None
 
 

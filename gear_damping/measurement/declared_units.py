@@ -90,6 +90,9 @@ class UnitSystem:
             return _around(unit, radius, self.si[name], key, text, source)
         if radius and self.si is not None and unit.dimension == _ANGULAR_ACCELERATION.dimension:
             return Conversion(unit.factor * radius, self.si[name])
+        if name == "acceleration" and self.si is not None and unit.dimension == _ANGULAR_ACCELERATION.dimension:
+            rule = f"'{text}' is the acceleration of a shaft's angle, which a casing has none of"
+            raise InputError(Problem(key, rule, text, "say whose it is: mounting: tangential, shaft: pinion", source))
         if self.si is not None:
             kept = _Reference(parse_unit(self.si[name]), self.si[name], 0)
             unit = of_a_shaft(unit, kept.unit)

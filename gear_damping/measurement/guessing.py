@@ -29,11 +29,12 @@ GEAR, OSCILLATOR = "gear_pair", "oscillator"
 _OF_THE_PINION = r"pinion|ritzel|_?1$|drive|(?<![a-z])in"
 _OF_THE_GEAR = r"gear|wheel|_?2$|driven|(?<![a-z])out"
 _PINION = re.compile(r"pinion|ritzel|pignon|piñ[oó]n|pinhão|pignone")  # what only a gear pair has
+_TACHO = re.compile(r"tach|keyphas")  # what only a shaft that turns has, and no relay
 # Roots of words in English, German, Spanish, Portuguese, Italian and French.
 _ANGLE, _ACCELERATION = r"angle|winkel|[aáâ]ngulo|angolo", r"acc|acel|beschl"
 # The first that fits counts; names in lower case without units and paths.
 _GEAR_NAMES = (
-    ("transmission_error", r"transmission|^d?te$|dte|^te[_ ]|[_ ]te$"),
+    ("transmission_error", r"transmission|^d?te$|dte|^te[_ ]|[_ ]te$|drehfehler|drehweg"),
     ("torque", r"torque|moment|^t[12]$|^m[12]$"),
     ("speed", r"speed|rpm|omega|drehzahl|veloc|vitesse|^n[12]?$"),
     ("angle", rf"{_ANGLE}|theta|phi|encoder|enc"),
@@ -142,8 +143,9 @@ def system_of(found: Inspection) -> tuple[str, str]:
             return GEAR, f"column '{column.reference}' may be of a shaft that turns: {column.says}"
     pulses = [column for column in found.measured if column.kind == PULSES]
     driven = {_oscillator_channel(column)[0] for column in found.measured} & {"displacement", "force"}
-    if pulses and not driven:
-        return GEAR, f"column '{pulses[0].reference}' may be a tacho: {pulses[0].says}"
+    named = [column for column in pulses if _TACHO.search(_plain(column))]
+    if pulses and (named or not driven):
+        return GEAR, f"column '{(named or pulses)[0].reference}' may be a tacho: {(named or pulses)[0].says}"
     return OSCILLATOR, "no column looks like a shaft that turns"
 
 

@@ -445,8 +445,9 @@ def _seen(
         return replace(column, kind=TIME, says=f"{other.says}: another clock", stamps=other)
     own = clock[1] if clock else None
     rate = base.sampling_rate if base is not None and column.values.size == length else own
-    seen = replace(column, kind=kind, says=says, step=_step_of(column.inside), rate=rate)
-    return replace(seen, spectrum=spectrum_of(_whole(seen), rate or 1.0))
+    seen = replace(column, kind=kind, says=says, rate=rate)
+    whole = _whole(seen)
+    return replace(seen, step=_step_of(whole), spectrum=spectrum_of(whole, rate or 1.0))
 
 
 def _counts_time(column: Column, clock: Column, stamps: Stamps) -> str | None:

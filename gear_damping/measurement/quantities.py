@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.measurement.record import Quantity
 from gear_damping.schema.values import Number, OneOf, Text, Value, is_not_finite, refuse
-from gear_damping.units import is_of_kind, parse_unit, said_as, spoken, to_si
+from gear_damping.units import behind, is_of_kind, parse_unit, said_as, spoken, to_si
 
 ORDERS = (1, 2, 4)  # poles of a Butterworth filter that the simulated sensor has too (`sensor_lowpass`)
 NOT_UNCERTAIN = (
@@ -339,8 +339,7 @@ class Measured(Value):
 
     @property
     def _range(self) -> str:
-        unit = "" if self.unit == "1" else f" {self.unit}"
-        return f"{self.within[0]:g} to {self.within[1]:g}{unit}"
+        return f"{self.within[0]:g} to {self.within[1]:g}{behind(self.unit)}"
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from gear_damping.measurement.column_kinds import ELSEWHERE
 from gear_damping.measurement.files import UNKNOWN
 from gear_damping.measurement.guessing import GEAR, Guess, is_linear_speed
 from gear_damping.measurement.inspection import Inspection
+from gear_damping.units import is_of_kind
 
 _PLAIN = re.compile(r"^[A-Za-z_/][\w./*^-]*$")
 _WORDS = ("y", "n", "yes", "no", "on", "off", "true", "false", "null")
@@ -92,7 +93,8 @@ def _channels(found: Inspection, system: str, listed: Sequence[Guess]) -> Iterat
     used = {guess.channel for guess in listed if guess.used}
     for guess in listed:
         if guess.channel is not None and guess.channel not in _ENCODERS:
-            yield f"{'' if guess.used else '# '}{guess.channel}: {_declared(guess)}   # {_comment(guess, found)}"
+            said = f"{guess.channel}: {_declared(guess, system)}   # {_comment(guess, found, system)}"
+            yield said if guess.used else f"# {said}"
     if system == GEAR:
         yield from _gear_channels(used)
     elif not used & {"displacement", "velocity", "acceleration"}:
@@ -107,29 +109,32 @@ def _gear_channels(used: set[str | None]) -> Iterator[str]:
         yield f"transmission_error: {_mapping({'column': UNKNOWN, 'unit': 'um'})}   # or another response"
 
 
-def _declared(guess: Guess) -> str:
+def _declared(guess: Guess, system: str) -> str:
     stated = {"column": guess.column.reference, "unit": guess.unit}
     clock = {"time": {"column": guess.clock.reference, "unit": guess.clock.stamps.unit}} if guess.clock else {}
-    needed = {"shaft": UNKNOWN} if _is_of_a_shaft(guess) else {}
+    mounted = {"mounting": "tangential"} if guess.channel == "acceleration" else {}
+    needed = mounted | {"shaft": UNKNOWN} if _is_of_a_shaft(guess, system) else {}
     if is_linear_speed(guess.channel, guess.unit):
         needed = {"radius": {"value": UNKNOWN, "unit": "mm"}}
     return _mapping(stated | needed | clock)
 
 
-def _is_of_a_shaft(guess: Guess) -> bool:
-    """Whether it is a transmission error that is an angle, of which only the user knows whose."""
+def _is_of_a_shaft(guess: Guess, system: str) -> bool:
+    """Whether it is an angle, or the acceleration of one, of which only the user knows whose."""
+    if guess.channel == "acceleration":
+        return system == GEAR and is_of_kind(guess.unit, "rad/s^2")
     return guess.channel == "transmission_error" and is_angle(guess.unit)
 
 
-def _comment(guess: Guess, found: Inspection) -> str:
+def _comment(guess: Guess, found: Inspection, system: str) -> str:
     said = f"guess: {guess.why}"
     if guess.unit == UNKNOWN:
         said += f"; fill in its unit{': ' + guess.unit_by if guess.unit_by else ''}"
     elif guess.unit_by:
         said += f"; unit {guess.unit}: {guess.unit_by}"
-    if _is_of_a_shaft(guess):
-        said += "; shaft: whose angle it is, pinion or gear"
-    if guess.channel == "acceleration" and guess.used and any(c.kind != "signal" for c in found.measured):
+    if _is_of_a_shaft(guess, system):
+        said += "; shaft: whose it is, pinion or gear"
+    elif guess.channel == "acceleration" and guess.used and any(c.kind != "signal" for c in found.measured):
         said += f"; {_CASING}"
     if found.table.full_scale is not None:
         said += "; range: {value: …, unit: …} says what full scale stands for"
@@ -165,7 +170,8 @@ def _gear(listed: Sequence[Guess]) -> Iterator[str]:
     missing = {}
     if not used.keys() & {"pinion_angle", "pinion_speed", "pinion", "gear", "tacho"}:
         missing["pinion_speed"] = "rpm"
-    if "pinion_torque" not in used and ("acceleration" not in used or used.keys() & _WITH_TORQUE):
+    is_casing = "acceleration" in used and not _is_of_a_shaft(used["acceleration"], GEAR)
+    if "pinion_torque" not in used and (not is_casing or used.keys() & _WITH_TORQUE):
         missing["pinion_torque"] = "N*m"
     if missing:
         yield "    conditions:"

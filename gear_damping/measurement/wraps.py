@@ -3,6 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.angular_error import turn_in
+from gear_damping.measurement.column_kinds import turn_of, unit_of_turn
 from gear_damping.measurement.encoders import WITHIN_A_TURN
 from gear_damping.measurement.overflow import FEWEST_LEAPS, leaps_over
 from gear_damping.measurement.record import Finding
@@ -25,6 +28,19 @@ def begins_again(angle: NDArray[np.float64], turn: float) -> bool:
         return False
     usual = [np.median(steps[max(0, k - _BESIDE) : k + _BESIDE + 1]) for k in jumps]
     return bool(np.all(np.abs(turn - steps[jumps]) <= _AS_BESIDE * np.array(usual) + _NEARLY_WHOLE * turn))
+
+
+def refuse_other_turn(angle: NDArray[np.float64], unit: str, key: str, source: str) -> None:
+    """Refuse an angle that falls back again and again by a turn of another unit than the one that is declared.
+
+    Raises:
+        InputError: naming the unit that it has.
+    """
+    height = turn_of(angle)
+    found = None if height is None else unit_of_turn(height)
+    if found and not np.isclose(turn_in(found), turn_in(unit)):
+        rule = f"the angle falls back by {height:.4g} again and again, a turn in {found}, and none in '{unit}'"
+        raise InputError(Problem(key, rule, unit, f"write unit: {found}", source))
 
 
 def unwrapped(angle: NDArray[np.float64], turn: float, name: str, notes: list[str]) -> NDArray[np.float64]:

@@ -30,6 +30,7 @@ from gear_damping.measurement.starting_yaml import starting_yaml
 from gear_damping.reporting.inspection import Curve, Panel, inspection_figure
 from gear_damping.reporting.style import save
 from gear_damping.tasks.run_folder import EDITED, RunFolder
+from gear_damping.units import behind
 
 YAML_NAME, TEXT_NAME, FIGURE_NAME = EDITED["inspect"], "inspection.txt", "inspection.png"
 JSON_NAME = "inspection.json"  # what the report is made of
@@ -297,7 +298,7 @@ def _record_lines(record: Record) -> Iterator[str]:
 
 
 def _channel(record: Record, channel: Channel, values: np.ndarray, spectrum: Spectrum | None) -> str:
-    said = f"{values.min() + 0.0:.5g} to {values.max() + 0.0:.5g}{_behind(channel.declared_unit)}"  # no -0
+    said = f"{values.min() + 0.0:.5g} to {values.max() + 0.0:.5g}{behind(channel.declared_unit)}"  # no -0
     if channel.name == "pinion_angle":  # what is left of a ramp is neither a tone nor a converter's step
         return f"{said}, {_turning(channel.values / (2 * np.pi), record.sampling_rate)}"
     said += f", offset (mean) {_mean(values):.5g}"
@@ -332,9 +333,4 @@ def _findings(record: Record) -> Iterator[str]:
 
 def _quantity(quantity: Any) -> str:
     known = f" ± {100 * quantity.uncertainty:g} %" if quantity.uncertainty else ""
-    return f"{quantity.value:.6g}{_behind(quantity.unit)}{known}"
-
-
-def _behind(unit: str) -> str:
-    """A unit as it stands behind a number."""
-    return "" if unit == "1" else f" {unit}"
+    return f"{quantity.value:.6g}{behind(quantity.unit)}{known}"

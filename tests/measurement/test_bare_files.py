@@ -266,3 +266,23 @@ def test_a_column_named_after_a_pinion_is_of_a_gear_pair(tmp_path):
     assert [one.channel for one in listed] == ["pinion_torque", "pinion_speed"]
     text = starting_yaml(found, system, listed)
     assert 'radius: {value: "???", unit: mm}' in text, "a speed in mm/s is one at a radius"
+
+
+def test_what_is_named_a_tacho_is_of_a_gear_pair_and_a_relay_is_not(tmp_path):
+    pulses, bent = 5.0 * (np.mod(31 * T, 1) < 0.3), 3e-6 * np.sin(900 * T)
+    for name, system in (("Tacho [V]", "gear_pair"), ("relay [V]", "oscillator")):
+        np.savez(tmp_path / "a.npz", **{"t [s]": T, "way [um]": bent, name: pulses})
+        assert guessed(read_table(tmp_path / "a.npz"))[1][0] == system
+
+
+def test_an_angular_acceleration_beside_a_counter_asks_for_its_shaft_and_the_torque(tmp_path):
+    np.savez(tmp_path / "a.npz", **{"t [s]": T, "alpha [rad/s^2]": 900 * np.sin(900 * T), "count": np.round(7e5 * T)})
+    text = starting_yaml(*guessed(read_table(tmp_path / "a.npz")))
+    assert 'unit: "rad/s^2", mounting: tangential, shaft: "???"' in text.replace("unit: rad/s^2", 'unit: "rad/s^2"')
+    assert "pinion_torque: {value: " in text
+    assert "casing" not in text
+
+
+def test_the_step_of_an_angle_that_falls_back_is_none_of_its_speed(tmp_path):
+    angle = np.round((1753.7 * T + 0.5 * np.sin(40 * T)) % 360, 3)
+    assert column(inspected(tmp_path, t=T, phi=angle), "phi").step == pytest.approx(1e-3, rel=0.01)

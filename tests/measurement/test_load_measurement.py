@@ -297,9 +297,17 @@ def test_single_wrong_samples_are_told_and_a_blow_or_a_coarse_step_is_none(tmp_p
     swing = np.exp(-0.2 * time) * np.sin(9 * time)
     coarse = np.round(swing, 1) + 1e-6 * np.random.default_rng(0).normal(size=time.size)
     struck = np.where(time > 10, np.exp(10 - time) * np.sin(9 * (time - 10)), 0.0) + 1e-4 * swing
-    wrong = swing.copy()
+    wrong, flickers = swing.copy(), swing.copy()
     wrong[[700, 1500]] += 0.4
-    for name, values, said in (("a", swing, False), ("b", coarse, False), ("c", struck, False), ("d", wrong, True)):
+    flickers[700:706] = swing[700] + 0.4 * np.array([0, 1, 0, 1, 1, 1])  # a converter between two of its levels
+    named = {
+        "a": (swing, False),
+        "b": (coarse, False),
+        "c": (struck, False),
+        "d": (wrong, True),
+        "e": (flickers, False),
+    }
+    for name, (values, said) in named.items():
         np.savez(tmp_path / f"{name}.npz", t=time, a=values)
         channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "a", "unit": "mm"}}
         content = {"system": "oscillator", "records": [{"file": f"{name}.npz", "channels": channels}]}

@@ -257,3 +257,25 @@ def test_a_stated_speed_against_the_torque_is_a_note(bench, speed, is_said):
         bench.record["channels"].pop(name, None)
     bench.write_csv()
     assert ("turns_backwards" in [one.kind for one in bench.load_as_it_is().records[0].findings]) is is_said
+
+
+@pytest.mark.parametrize("mounting", [{}, {"mounting": "casing"}])
+def test_an_angular_acceleration_is_none_of_a_casing(bench, mounting):
+    bench.channels["acceleration"] = {"column": "dte", "unit": "rad/s^2"} | mounting
+    (problem,) = bench.problems()
+    assert "which a casing has none of; remedy: say whose it is: mounting: tangential, shaft: pinion" in problem
+
+
+@pytest.mark.parametrize(
+    ("unit", "height", "remedy"), [("rad", 360.0, "deg"), ("deg", TURN, "rad"), ("deg", 1.0, "rev")]
+)
+def test_an_angle_that_falls_back_by_a_turn_of_another_unit_is_refused(bench, unit, height, remedy):
+    turns = bench.columns["theta1"] / TURN * 12 / np.ptp(bench.columns["theta1"] / TURN)
+    bench.columns["theta1"] = height * (turns % 1)
+    bench.channels["pinion_angle"] = {"column": "theta1", "unit": unit}
+    (problem,) = bench.problems()
+    assert f"a turn in {remedy}, and none in '{unit}'; remedy: write unit: {remedy}" in problem
+    bench.channels["pinion_angle"]["unit"] = remedy
+    assert np.ptp(bench.load_as_it_is().records[0].channels["pinion_angle"].values) == pytest.approx(
+        12 * TURN, rel=1e-6
+    )
