@@ -1,10 +1,13 @@
 """How the threads of PyTorch behave, which OpenMP reads once, when PyTorch is loaded."""
 
 import os
-from collections.abc import MutableMapping
+import sys
+from collections.abc import Iterator, MutableMapping
+from contextlib import contextmanager
 from math import ceil
 from pathlib import Path
 
+spins = "torch" in sys.modules and not os.environ.get("OMP_WAIT_POLICY")  # then it is too late to say otherwise
 GROUP = Path("/sys/fs/cgroup")  # of this process, as a container sees its own (Linux, cgroups v2 and v1)
 
 
@@ -23,6 +26,21 @@ def settle_threads(environment: MutableMapping[str, str] = os.environ, group: Pa
     allowed, seen = _allowed(group), os.cpu_count() or 1
     if allowed is not None and allowed < seen:
         environment.setdefault("OMP_NUM_THREADS", str(allowed))
+
+
+@contextmanager
+def no_spinning() -> Iterator[None]:
+    """One thread for as long as this lasts, where PyTorch was loaded before and its threads spin while they wait."""
+    torch = sys.modules.get("torch")
+    if torch is None or not spins:
+        yield
+        return
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
 
 
 def _allowed(group: Path) -> int | None:

@@ -45,6 +45,7 @@ from gear_damping.measurement.record import Finding, Measurement
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Effect
 from gear_damping.simulation.solver_settings import Solver
+from gear_damping.threads import no_spinning
 
 STEPS = 4  # that are reported: evidence, calibration, search, verdict
 STRETCHES, CLEAR = 8, 10.0  # of a record; noise variances that a stretch must hold to tell anything
@@ -120,7 +121,8 @@ def explain(
     if faults := mesh_order_faults(evidence) or stated_speed_faults(evidence):
         return Explanation(report_fields.of_faults(measurement, faults))
     evidence = evidence if library is None else replace(evidence, library=library)
-    return _of_evidence(evidence, measurement, listener, fitting_solver(solver), budget)
+    with no_spinning():
+        return _of_evidence(evidence, measurement, listener, fitting_solver(solver), budget)
 
 
 def _of_evidence(
