@@ -259,7 +259,9 @@ def _measurement_lines(measurement: Measurement) -> Iterator[str]:
     for name, quantity in measurement.parameters.items():
         yield f"  {name}: {_quantity(quantity)}"
     if frequency := natural_frequency(measurement):
-        yield f"  natural frequency, by these: {frequency:.4g} Hz"
+        nyquist = max(record.sampling_rate for record in measurement.records) / 2
+        beyond = f", above half of every sampling rate ({nyquist:g} Hz): are their units right?"
+        yield f"  natural frequency, by these: {frequency:.4g} Hz{beyond if frequency > nyquist else ''}"
     for role, word in (("fit", "fitted"), ("holdout", "held out"), ("reference", "compared with")):
         named = [record.name for record in measurement.with_role(role)]
         if named:
