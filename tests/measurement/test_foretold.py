@@ -5,6 +5,7 @@ import pytest
 
 from gear_damping.measurement.foretold import natural_frequency, of_record
 from gear_damping.measurement.load import load_measurement
+from gear_damping.tasks.inspect import _measurement_lines
 
 STATED = {
     "n_teeth_pinion": 18,
@@ -36,6 +37,16 @@ def test_a_gear_pair_is_foretold_by_its_figures(rig):
     assert said.startswith("teeth mesh at 540 Hz on average, the mean torque presses them by ")
     assert float(said.split()[-2]) == pytest.approx(pressed, rel=0.01)
     assert said.endswith(" um")
+
+
+@pytest.mark.parametrize(("inertia", "is_doubted"), [("0.0012 kg*m^2", False), ("0.0012 kg*cm^2", True)])
+def test_a_natural_frequency_beyond_the_records_is_doubted(rig, inertia, is_doubted):
+    rig.content["parameters"]["inertia_pinion"] = inertia
+    measurement = rig.load()
+    (line,) = [line for line in _measurement_lines(measurement) if "natural frequency" in line]
+    half = measurement.records[0].sampling_rate / 2
+    assert (natural_frequency(measurement) > half) == is_doubted
+    assert line.endswith(f", above half of every sampling rate ({half:g} Hz): are their units right?") == is_doubted
 
 
 def test_a_speed_about_its_mean_is_not_the_mean(rig):

@@ -197,17 +197,6 @@ def test_what_has_no_unit_is_told_without_one(tmp_path):
     assert "force: -2 to 2, offset (mean)" in (tmp_path / "out" / "inspection.txt").read_text()
 
 
-def test_a_natural_frequency_beyond_the_records_is_doubted(tmp_path):
-    _csv(tmp_path / "run.csv")
-    channels = {"time": {"column": "time (s)"}, "displacement": {"column": "angle (rad)"}}
-    content = {"system": "oscillator", "records": [{"file": "run.csv", "channels": channels}]}
-    content["parameters"] = {"stiffness": {"value": 3e6, "unit": "1/s^2"}}  # 276 Hz; the record has 500 Hz
-    (tmp_path / "m.yaml").write_text(yaml.safe_dump(content))
-    inspected(tmp_path / "m.yaml", tmp_path / "out")
-    text = (tmp_path / "out" / "inspection.txt").read_text()
-    assert "275.7 Hz, above half of every sampling rate (250 Hz): are their units right?" in text
-
-
 @pytest.mark.parametrize(
     ("name", "content", "words"),
     [
