@@ -14,7 +14,8 @@ from gear_damping.measurement.recordings import recordings
 from gear_damping.units import is_of_kind, to_si
 
 NAMED = re.compile(
-    r"^(t|ts|tt|x_value|ms|msec|us|usec|µs|ns|sec)$|time|zeit|temps|tiempo|stamp|second|millis|micros|elapsed|clock|abscissa",
+    r"^(t|ts|tt|x_value|ms|msec|us|usec|µs|ns|sec|tid|tijd|czas)$|time|zeit|temps|tempo(?!r)|tiempo|stamp|second|millis|"
+    r"micros|elapsed|clock|abscissa",
     re.I,
 )
 _SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|ns|min|h)$", re.I)
@@ -105,7 +106,7 @@ def find_stamps(columns: Sequence[_Column], untimed: bool = False) -> Stamps | N
     if not untimed or not telling:
         return None
     if _rises(columns[telling[0]]):
-        return Stamps(telling[0], *_unit(columns[telling[0]]), "is the first column and rises in nearly even steps")
+        return Stamps(telling[0], *_unit(columns[telling[0]]), f"is the first column and {_says(columns[telling[0]])}")
     steady = [k for k in telling if _goes_like_a_clock(columns[k])]
     if len(steady) != 1:
         return None
@@ -279,7 +280,12 @@ def _by_steps(index: int, column: _Column) -> str:
         return ""
     if index:
         return f"is the first column of {name[: -len('[0]')]} and advances evenly" if _is_even(column) else ""
-    return "is the first column and advances evenly" if _is_nearly_even(column) else ""
+    return f"is the first column and {_says(column)}" if _is_nearly_even(column) else ""
+
+
+def _says(column: _Column) -> str:
+    """How a column advances."""
+    return "advances evenly" if _is_even(column) else "rises in nearly even steps"
 
 
 def _by_ramp(index: int, column: _Column) -> str:

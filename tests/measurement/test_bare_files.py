@@ -61,9 +61,20 @@ def test_stamps_of_a_camera_need_no_name(tmp_path, rate):
     assert found.rate == pytest.approx(rate, rel=1e-3)
 
 
+@pytest.mark.parametrize(("off", "says"), [(0, "advances evenly"), (0.1, "rises in nearly even steps")])
+def test_a_first_column_of_stamps_is_said_to_be_as_even_as_it_is(tmp_path, off, says):
+    stamps = T + off / 1000 * RNG(2).uniform(-0.5, 0.5, N)
+    assert _logged(tmp_path, stamps[:999], np.sin(9 * T)[:999]).time.says == f"is the first column and {says}"
+
+
+@pytest.mark.parametrize("name", ["Tempo", "tempo_s", "czas"])
+def test_time_is_known_by_its_name_in_other_languages(tmp_path, name):
+    assert _camera(tmp_path, name, np.arange(300) / 30).time.says == "advances and is named like a time"
+
+
 def _logged(folder, *columns):
     """A log without a header."""
-    rows = (" ".join(f"{value:g}" for value in row) for row in zip(*columns, strict=True))
+    rows = (" ".join(f"{value:.9g}" for value in row) for row in zip(*columns, strict=True))
     (folder / "log.txt").write_text("\n".join(rows) + "\n")
     return inspect_table(read_table(folder / "log.txt"))
 
