@@ -30,6 +30,7 @@ STRAIGHT, FEWEST_OF_A_LINE = 1e-6, 16  # of its range; samples: fewer steps of a
 MOST_NOISE = 30.0  # times what a channel holds: no guess of a noise is so far off, and a wrong unit is 1000 times
 OVERSAMPLED = "oversampled"
 SAMPLES_PER_PERIOD = 100  # of the fastest content; more only slow the work
+_ENOUGH = 40  # of them: harmonics that tell a law by little energy have four of them up to the tenth
 _CONTENT = 0.999  # share of the energy that counts as content
 _FEWEST_SWINGS = 8  # through its mean: what creeps back to zero passes that once
 _SWINGS_BEYOND = 0.5  # of a swing's deviation: what passes to both sides so far, and more than its middle moves
@@ -251,8 +252,8 @@ def _oversampled(record: Record) -> Finding | None:
     if fastest == 0.0 or record.sampling_rate <= SAMPLES_PER_PERIOD * fastest:
         return None
     message = (
-        f"99.9 % of the energy lies below {fastest:.3g} Hz, so that {record.sampling_rate:.4g} Hz "
-        "is far more than is needed; resample: {value: …, unit: Hz} saves time"
+        f"99.9 % of the energy lies below {fastest:.3g} Hz, so that {record.sampling_rate:g} Hz "
+        f"is far more than is needed; resample: {{value: {float(f'{_ENOUGH * fastest:.2g}'):g}, unit: Hz}} saves time"
     )
     return Finding(OVERSAMPLED, message, severity="note")
 

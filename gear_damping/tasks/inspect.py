@@ -275,11 +275,20 @@ def _measurement_lines(measurement: Measurement) -> Iterator[str]:
     if measurement.segment_s:
         yield f"  segments of exactly {measurement.segment_s:g} s are fitted and scored"
     else:
-        yield "  segments: none stated; records are cut only where the system or the model needs it"
+        yield f"  segments: none stated; {_DRIFTS if _drifts(measurement) else _CUT}"
 
 
+_CUT = "records are cut only where the system or the model needs it"
+_DRIFTS = "without a spring a displacement drifts away from any simulation: segments: {value: …, unit: s} begin anew"
 _AUTOMATIC = "; task=explain holds out a part of them by itself, and so does task=identify of a gear pair"
 _CASINGS = "; task=explain looks into all of them, and task=identify finds no damping behind a casing"
+
+
+def _drifts(measurement: Measurement) -> bool:
+    """Whether nothing holds a measured displacement in its place."""
+    spring = measurement.parameters.get("stiffness")
+    springless = spring is not None and spring.value == 0
+    return springless and any("displacement" in record.channels for record in measurement.records)
 
 
 def _is_casing_alone(record: Record) -> bool:

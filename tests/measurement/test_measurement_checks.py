@@ -227,6 +227,9 @@ def test_oversampling_is_a_note(bench):
     _errors(bench)[:] = 8 + 2 * np.sin(2 * np.pi * 100 * bench.columns["t"])
     (finding,) = bench.load().findings
     assert (finding.kind, finding.severity) == ("oversampled", "note")
+    assert (
+        "so that 20000 Hz is far more than is needed; resample: {value: 6000, unit: Hz} saves time" in finding.message
+    )
 
 
 def test_a_record_is_not_oversampled_beside_one_of_its_rate_that_is_not(bench):

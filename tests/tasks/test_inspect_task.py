@@ -198,6 +198,21 @@ def test_what_has_no_unit_is_told_without_one(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("stiffness", "channel", "drifts"),
+    [(0, "displacement", True), (0, "velocity", False), (350, "displacement", False)],
+)
+def test_a_displacement_that_no_spring_holds_is_advised_to_be_cut(tmp_path, stiffness, channel, drifts):
+    _csv(tmp_path / "run.csv")
+    channels = {"time": {"column": "time (s)"}, channel: {"column": "angle (rad)", "unit": "rad"}}
+    content = {"system": "oscillator", "records": [{"file": "run.csv", "channels": channels}]}
+    content["parameters"] = {"stiffness": {"value": stiffness, "unit": "1/s^2"}}
+    (tmp_path / "m.yaml").write_text(yaml.safe_dump(content))
+    inspected(tmp_path / "m.yaml", tmp_path / "out")
+    text = (tmp_path / "out" / "inspection.txt").read_text()
+    assert ("without a spring a displacement drifts away from any simulation: segments: {value" in text) == drifts
+
+
+@pytest.mark.parametrize(
     ("name", "content", "words"),
     [
         ("run.mat", b"MATLAB 5.0 and nothing else", "run.mat"),
