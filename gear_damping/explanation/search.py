@@ -7,7 +7,7 @@ from gear_damping.explanation.evidence.excess import is_form, is_settled
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.each_alone import followed_one_by_one
-from gear_damping.explanation.steps.faint import faint_cause
+from gear_damping.explanation.steps.faint import faint_cause, is_confirmed_beside
 from gear_damping.explanation.steps.pairs import (
     with_pair,
     with_pair_instead,
@@ -102,7 +102,10 @@ def _with_more(state: State) -> tuple[State, bool]:
         return state, False
     if settled and not is_gross:
         state, best, rivals = _of_records_instead(*faint_cause(state))
-        further = with_pair_of_as_many(state) if best is None else state.accepting(best, rivals)
+        if best is None:
+            further = with_pair_of_as_many(state)
+        else:
+            further = _calibrated_anew(state, best, is_faint=True) or state.accepting(best, rivals)
         return (state, False) if further is None else (further, True)
     if (instead := with_pair_of_a_nearer(state)) is not None:
         return instead, True
@@ -132,14 +135,22 @@ def _is_missed_grossly(state: State) -> bool:
     return not state.accepted and beyond > gross and not followed_one_by_one(state)
 
 
-def _calibrated_anew(state: State, best: Refit) -> State | None:
-    """The state without the local minimum that an effect seemed needed for: what it took is taken without it."""
+def _calibrated_anew(state: State, best: Refit, is_faint: bool = False) -> State | None:
+    """The state without the local minimum that an effect seemed needed for: what it took is taken without it.
+
+    Beside the model without it, too, an effect has to be what it was accepted as.
+    """
     bench = state.bench
     if state.calibrations >= bench.settings.most_calibrations:
         return None
     # far above what a cause must leave it creeps for half a minute
-    settled = bench.without(best.outcome, best.name, bench.foretold(bench.goal(state.outcome)))
-    if not bench.is_as_good(settled, best.outcome):
+    reach = bench.spared(best.outcome) if is_faint else bench.foretold(bench.goal(state.outcome))
+    settled = bench.without(best.outcome, best.name, reach)
+    if is_faint:
+        is_needed = is_confirmed_beside(settled, best, state)
+    else:
+        is_needed = not bench.is_as_good(settled, best.outcome) and state.is_validated_beside(best, settled)
+    if is_needed:
         return None
     bench.log(f"what {best.name} seemed to take is taken without it: the fit had not converged")
     nominal = state.nominal if state.accepted else settled

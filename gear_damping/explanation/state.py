@@ -11,7 +11,7 @@ from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.own_phases import own_levels
 from gear_damping.explanation.trials.assess import Assessment
 from gear_damping.explanation.trials.bench import Bench
-from gear_damping.explanation.trials.refit import Refit, runs_into_bound
+from gear_damping.explanation.trials.refit import Refit, compared, runs_into_bound
 from gear_damping.explanation.trials.score import Score
 from gear_damping.explanation.trials.told_size import without_a_figure
 from gear_damping.physics.terms import Effect
@@ -186,6 +186,11 @@ class State:
         left = beyond(self.outcome).percent
         is_enough = left > 0 and left - beyond(fit.outcome).percent >= settings.least_share * left
         return is_enough and fit.is_seen_in_fit and fit.t > settings.accepted_t
+
+    def is_validated_beside(self, fit: Refit, before: Outcome) -> bool:
+        """The same where another model is what it is held against."""
+        held = compared(fit.score, fit.outcome, before, self.bench.evidence)
+        return replace(self, outcome=before).is_validated(held)
 
     @property
     def is_far_off(self) -> bool:

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from gear_damping.explanation import search
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps import faint
@@ -151,3 +152,25 @@ def test_a_law_of_no_known_size_counts_where_it_takes_most_of_what_was_left(befo
     found, beside = fit("a"), outcome()
     tried_on = bench(SearchSettings(), [(found.outcome, left(40.0, 100.0)), (beside, left(before, 2.5 * before))])
     assert is_determined_within(2.0, tried_on, found, beside) is counts
+
+
+@pytest.mark.parametrize(
+    ("cost", "t", "is_taken_without_it"),
+    [
+        (0.9, 5.0, False),
+        (0.5, 5.0, True),  # the fit without it had not converged: it comes as far
+        (0.9, 0.5, True),  # left-out records are foretold as well by it
+    ],
+)
+def test_a_faint_cause_is_one_beside_the_model_without_it_too(cost, t, is_taken_without_it, monkeypatch):
+    """An eccentricity of .04 um was established in a null whose nominal model had not converged."""
+    best, settled = fit(SHOWING, cost=0.5, score=None), outcome(cost)
+    bench = SimpleNamespace(
+        settings=SearchSettings(), evidence=None, log=lambda said: None, spared=lambda found: found.fitted.cost,
+        without=lambda *_: settled, confirmation=lambda before, after: t if before is settled else 9.0,
+    )  # fmt: skip
+    monkeypatch.setattr(faint, "compared", lambda *_: best)
+    monkeypatch.setattr(State, "is_validated_beside", lambda *_: False)
+    state = State(bench, outcome(1.0), outcome(1.0), left=SimpleNamespace(taken=0.5))
+    anew = search._calibrated_anew(state, best, is_faint=True)
+    assert (anew is not None and anew.outcome is anew.nominal is settled) == is_taken_without_it

@@ -11,7 +11,7 @@ from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.assess import Assessment
 from gear_damping.explanation.trials.bench import Bench, has_many
-from gear_damping.explanation.trials.refit import Refit, chosen
+from gear_damping.explanation.trials.refit import Refit, chosen, compared
 from gear_damping.explanation.trials.score import Score, best_by_effect
 from gear_damping.physics.systems.traits import Trait
 
@@ -61,6 +61,12 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
         rivals = [fit for fit in (first, *rivals) if fit is not simpler[0]]
         first = simpler[0]
     return state, first, tuple(fit.name for fit in rivals)
+
+
+def is_confirmed_beside(before: Outcome, fit: Refit, state: State) -> bool:
+    """Whether a cause that was confirmed beside one model is so beside another, too."""
+    held = compared(fit.score, fit.outcome, before, state.bench.evidence)
+    return state.is_validated_beside(fit, before) or _is_worth(held, before, state.left, state.bench)
 
 
 def _fitted(scores: Sequence[Score], state: State) -> list[Refit]:
