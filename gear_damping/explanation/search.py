@@ -20,6 +20,8 @@ from gear_damping.explanation.steps.told import told
 from gear_damping.explanation.trials.bench import Bench
 from gear_damping.explanation.trials.refit import Refit
 
+INSTEAD = "other effects in the place of causes that take nearly all"
+
 
 def search(nominal: Outcome, bench: Bench, carried_on: Sequence[Refit] = ()) -> State:
     """Extend the nominal model until nothing significant is missing or nothing more is validated.
@@ -29,7 +31,7 @@ def search(nominal: Outcome, bench: Bench, carried_on: Sequence[Refit] = ()) -> 
         bench: The records, their noise, and where candidates are tried.
         carried_on: Full fits to other evidence that are carried on.
     """
-    state = _doubted(_extended(looked(State(bench, nominal, nominal, carried_on=tuple(carried_on)))))
+    state = _doubted(_thought_over(_extended(looked(State(bench, nominal, nominal, carried_on=tuple(carried_on))))))
     while state.unsized and not bench.budget.refuses("effects in the place of those of no known size"):
         state = _doubted(_extended(looked(state.without_unsized())))
     state = _or_before(state)
@@ -44,6 +46,14 @@ def _extended(state: State) -> State:
         state, goes_on = _with_more(state)
         state = looked(state).with_itself_passed() if goes_on else state
     return state
+
+
+def _thought_over(state: State) -> State:
+    """With the second thoughts about causes that take nearly all, which wait until no further one is found."""
+    if len(state.accepted) < 2 or not state.takes_nearly_all or state.bench.budget.postpones(INSTEAD):
+        return state
+    thought = with_pair_instead(exchanged(state))
+    return thought if thought.outcome is state.outcome else _extended(looked(thought))
 
 
 def _or_before(state: State) -> State:
@@ -112,8 +122,9 @@ def _with_more(state: State) -> tuple[State, bool]:
     state, best, rivals = _of_records_instead(*single_cause(state))
     if best is None:
         further = with_pair(state) or cause_of_records(state)
-    else:
-        further = _calibrated_anew(state, best) or with_pair_instead(exchanged(state.accepting(best, rivals)))
+    elif (further := _calibrated_anew(state, best)) is None:
+        further = state.accepting(best, rivals)
+        further = further if further.takes_nearly_all else with_pair_instead(exchanged(further))
     return (state, False) if further is None else (further, True)
 
 

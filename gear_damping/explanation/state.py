@@ -250,6 +250,13 @@ class State:
         """What another model takes of what this one leaves, as a share of what the nominal one leaves."""
         return self.share_between(self.outcome, outcome)
 
+    @property
+    def takes_nearly_all(self) -> bool:
+        """Whether the causes take of the first excess what establishes them though something is left."""
+        return (
+            bool(self.accepted) and self.share_between(self.nominal, self.outcome) >= self.bench.settings.taken_by_all
+        )
+
     def share_between(self, before: Outcome, after: Outcome) -> float:
         """The fall of the excess on left-out records over the first one; that of all residuals if there was none."""
         if self.first.percent > 0:

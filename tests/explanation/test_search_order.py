@@ -69,3 +69,24 @@ def test_what_is_missed_grossly_is_looked_for_however_random_it_looks(visible, b
     assert step_after(rest, accepted=False, first=30.0, visible=visible, beyond=beyond) == step
     one_by_one = step_after(rest, accepted=False, first=30.0, visible=visible, beyond=beyond, alone="each its own")
     assert one_by_one == (["faint_cause"] if visible else [])
+
+
+@pytest.mark.parametrize(("leaves", "at_once"), [(0.2, False), (0.9, True)])
+def test_second_thoughts_about_causes_that_take_nearly_all_wait(leaves, at_once, monkeypatch):
+    """Two right causes took 96 % after 108 s, and second thoughts the rest of five minutes."""
+    thought, nominal, after = [], outcome(1.0), outcome(0.1)
+    known = bench(SearchSettings(taken_by_all=0.9), [(nominal, left(5.0, 12.0)), (after, left(leaves, 3.0))])
+    in_time, late = (replace(known, budget=SimpleNamespace(postpones=lambda _, late=late: late)) for late in (0, 1))
+    best = SimpleNamespace(outcome=after)
+    monkeypatch.setattr(State, "accepting", lambda state, *_: replace(state, outcome=after, accepted=(None, None)))
+    monkeypatch.setattr(search, "_calibrated_anew", lambda *_: None)
+    monkeypatch.setattr(search, "with_pair_of_a_nearer", lambda state: None)
+    monkeypatch.setattr(search, "single_cause", lambda state: (state, best, ()))
+    monkeypatch.setattr(search, "_of_records_instead", lambda *found: found)
+    monkeypatch.setattr(search, "exchanged", lambda state: thought.append(state) or state)
+    monkeypatch.setattr(search, "with_pair_instead", lambda state: state)
+    state, goes_on = search._with_more(State(in_time, nominal, nominal))
+    assert (goes_on, len(thought)) == (True, at_once)
+    for known, times in ((late, at_once), (in_time, 1)):
+        search._thought_over(replace(state, bench=known))
+        assert len(thought) == times

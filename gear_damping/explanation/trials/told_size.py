@@ -111,11 +111,18 @@ def _moving(outcome: Outcome, evidence: Evidence) -> list[bool]:
 
 
 def _orthogonal_columns(outcome: Outcome, places: list[int], cause: str) -> Tensor:
-    """What the strengths change, (samples, strengths), all that is free but the cause's own shape projected out."""
-    problem, sensitivity = outcome.problem, outcome.fitted.prediction.sensitivity[0]
+    """What the strengths change, (samples + n, strengths), all that is free but the cause's own shape projected out.
+
+    The last n rows are what is known of the n shared parameters: a strength may trade against a stiffness and an
+    inertia together, and these are stated.
+    """
+    problem, prediction = outcome.problem, outcome.fitted.prediction
+    sensitivity = prediction.sensitivity[0]
     orthogonal = project_out(
         sensitivity[..., : problem.n_shared], nuisance_basis(sensitivity, problem.n_shared)
     ).flatten(0, 1)
+    _, slope = problem.expectation(outcome.fitted.shared, prediction.residual[0])
+    orthogonal = torch.cat([orthogonal, torch.diag(slope)])
     others = [i for i, p in enumerate(problem.free) if i not in places and not p.name.startswith(cause + ".")]
     return _without(orthogonal[:, places], orthogonal[:, others])
 
@@ -126,10 +133,15 @@ def _without(columns: Tensor, others: Tensor) -> Tensor:
 
 
 def _statistic(outcome: Outcome, change: Tensor, lags: list[int]) -> float:
-    """Square of the energy of a change over the variance of its product with the residuals; coloured or white."""
+    """Square of the energy of a change over the variance of its product with the residuals; coloured or white.
+
+    Its last rows, beyond the samples, are what is known of the parameters, which is as noise.
+    """
     residual = outcome.fitted.prediction.residual[0]
-    products = (change.reshape(residual.shape) * residual).unsqueeze(-1)
-    coloured = sum(float(long_run(one, lag)) for one, lag in zip(products, lags, strict=True))
+    shown, known = change[: residual.numel()], change[residual.numel() :]
+    products = (shown.reshape(residual.shape) * residual).unsqueeze(-1)
+    of_known = float(known.square().sum()) * float(outcome.problem.level(residual))
     energy = float(change.square().sum())
-    white = energy * float(residual.square().sum()) / max(float((outcome.problem.response.weights > 0).sum()), 1.0)
-    return energy**2 / max(coloured, white, 1e-300)
+    power = float(residual.square().sum()) / max(float((outcome.problem.response.weights > 0).sum()), 1.0)
+    coloured = sum(float(long_run(one, lag)) for one, lag in zip(products, lags, strict=True)) + of_known
+    return energy**2 / max(coloured, energy * power, 1e-300)

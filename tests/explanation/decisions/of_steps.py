@@ -137,6 +137,7 @@ def size_is_told(sizes: list[float], apart: float, settings: SearchSettings) -> 
         parameter.value = lambda shared, size=size: size / samples**0.5
     problem = SimpleNamespace(free=free, records=[SimpleNamespace(sampling_rate=1.0)])
     problem.response = SimpleNamespace(weights=torch.ones(samples))
+    problem.level = lambda residual: torch.ones(())
     model = outcome(problem=problem, hypothesis=None)
     model.fitted.shared = torch.zeros(count)
     model.fitted.prediction = SimpleNamespace(residual=residual.reshape(1, 1, -1))
