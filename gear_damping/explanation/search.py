@@ -31,12 +31,17 @@ def search(nominal: Outcome, bench: Bench, carried_on: Sequence[Refit] = ()) -> 
         bench: The records, their noise, and where candidates are tried.
         carried_on: Full fits to other evidence that are carried on.
     """
-    state = _doubted(_thought_over(_extended(looked(State(bench, nominal, nominal, carried_on=tuple(carried_on))))))
+    state = _from(State(bench, nominal, nominal, carried_on=tuple(carried_on)))
     while state.unsized and not bench.budget.refuses("effects in the place of those of no known size"):
-        state = _doubted(_extended(looked(state.without_unsized())))
+        state = _from(state.without_unsized())
     state = _or_before(state)
     bench.budget.asks_again(state.names)  # another form of what was found waits for nothing any more
     return beside_the_others(state) if len(state.accepted) > 1 else state
+
+
+def _from(state: State) -> State:
+    """With the causes that are found from a state on, thought over and doubted."""
+    return _doubted(_thought_over(_extended(looked(state))))
 
 
 def _extended(state: State) -> State:
@@ -53,7 +58,7 @@ def _thought_over(state: State) -> State:
     if len(state.accepted) < 2 or not state.takes_nearly_all or state.bench.budget.postpones(INSTEAD):
         return state
     thought = with_pair_instead(exchanged(state))
-    return thought if thought.outcome is state.outcome else _extended(looked(thought))
+    return thought if thought.outcome is state.outcome else _extended(looked(thought).with_itself_passed())
 
 
 def _or_before(state: State) -> State:
