@@ -25,7 +25,8 @@ consistent once it is calibrated; an effect that the catalogue lacks, unexplaine
 established. The cases are few and were chosen, not drawn: they say whether another rig is a difficulty, and no rate.
 They are fixed, too: a package that is changed after its answers about them were read is not blind to them any more.
 In c03 and d10 the cracked tooth stands elsewhere in each record although the counters of both shafts run on, which no
-gear does; they are kept as they were made.
+gear does; they are kept as they were made. The gear's torque of d09 follows the ripple: of one that stands a sensor on
+a shaft would show how both shafts speed up, which this generator does not tell.
 """
 DRAWN_HEAD = """# Drawn cases of the second rig
 
