@@ -15,6 +15,7 @@ from gear_damping.explanation.answer.stand_in import (
     stand_ins,
     swinging_on,
 )
+from gear_damping.explanation.answer.too_little import takes_of_little
 from gear_damping.explanation.evidence.excess import excess
 from gear_damping.explanation.model.contradicted import contradicts_stated
 from gear_damping.explanation.model.homogeneity import homogeneity
@@ -135,6 +136,7 @@ def _judged(found: Confirmed, notes: Sequence[str], is_short: bool) -> tuple[Jud
     left = line_left(state)
     acting = (*acts_as(state), *also_as(state), *modes_of(state)) if said.word not in (CONSISTENT, UNEXPLAINED) else ()
     if said.word == CONSISTENT:  # what would take part of so little is no cause
+        said = said.saying(takes_of_little(state))
         state, after = replace(state, accepted=(), outcome=state.nominal, left=state.seen), before
     differs = said_of_levels(state.outcome, evidence) if state.accepted else []
     said = said.saying(left, *differs, *notes, *acting, *inputs_and_loads(state), budget.sentence)
