@@ -58,7 +58,8 @@ def _of_unit_spread(outcome: Outcome, spread: str, level: str) -> Outcome:
 def levels_by_record(outcome: Outcome, cause: str, evidence: Evidence) -> Rows:
     """By how much the coefficient of a cause is off its mean in each fitted record, with its 95 % interval.
 
-    Every parameter is a nuisance but that of the mean, which the levels of all records together are as well.
+    Every parameter is a nuisance but that of the mean, which the levels of all records together are as well. What the
+    file states of them counts: of a speed alone masses, stiffness and damping may all be larger together.
     """
     problem, prediction = outcome.problem, outcome.linearisation
     of_spread, level = own_levels(outcome)[cause]
@@ -68,19 +69,30 @@ def levels_by_record(outcome: Outcome, cause: str, evidence: Evidence) -> Rows:
         return []
     own = nuisance_basis(prediction.sensitivity[0], problem.n_shared)
     apart = project_out(prediction.sensitivity[0], own).flatten(0, 1)[:, : problem.n_shared]
+    samples, apart = len(apart), torch.cat([apart, _stated(outcome, {*places, of_spread})])
     columns = apart[:, list(places.values())] / spread
     levels = torch.linalg.qr(_scaled(columns)).Q
     beside = (apart - levels @ (levels.T @ apart)).norm(dim=0) > SAME * apart.norm(dim=0)
     basis = torch.linalg.qr(_scaled(apart[:, beside])).Q
     columns = columns - basis @ (basis.T @ columns)
     residual = project_out(prediction.residual[0].unsqueeze(-1), own).flatten()
-    errors = _errors(columns, residual - basis @ (basis.T @ residual), block_of(outcome, evidence))
+    residual = residual - basis[:samples] @ (basis[:samples].T @ residual)
+    level = float(problem.level(prediction.residual[0]))
+    errors = _errors(columns, residual, block_of(outcome, evidence), level)
     rows = []
     for name, error in zip(places, errors.tolist(), strict=True):
         value = spread * outcome.values[name]
         ends = [value - QUANTILE * error, value + QUANTILE * error]
         rows.append({"record": name.partition(SEPARATOR)[2], "value": value, "interval95": ends})
     return rows
+
+
+def _stated(outcome: Outcome, but: set[str]) -> Tensor:
+    """A row for what is known of each shared parameter, (n, n), but of some."""
+    problem = outcome.problem
+    _, slope = problem.expectation(outcome.fitted.shared, outcome.linearisation.residual[0])
+    counts = torch.tensor([parameter.name not in but for parameter in problem.free[: problem.n_shared]])
+    return torch.diag(slope * counts)
 
 
 def damping_by_record(outcome: Outcome, evidence: Evidence) -> Rows:
@@ -154,12 +166,16 @@ def _said(rows: Rows, what: str, unit: str, digits: int) -> list[str]:
     return [f"The {what} is {listed}: no one figure stands for all of them."]
 
 
-def _errors(columns: Tensor, residual: Tensor, block: int) -> Tensor:
-    """Standard errors of coefficients, (columns,), whose residuals are correlated within blocks."""
-    inverse = torch.linalg.pinv(columns.T @ columns)
-    scores = (columns * residual.unsqueeze(1))[: len(columns) // block * block]
+def _errors(columns: Tensor, residual: Tensor, block: int, level: float) -> Tensor:
+    """Standard errors of coefficients, (columns,), whose residuals are correlated within blocks.
+
+    Rows of columns beyond the samples are what is known of parameters, whose variance is `level`.
+    """
+    inverse, samples = torch.linalg.pinv(columns.T @ columns), len(residual)
+    scores = (columns[:samples] * residual.unsqueeze(1))[: samples // block * block]
     blocks = scores.unflatten(0, (-1, block)).sum(1)
-    return (inverse @ (blocks.T @ blocks) @ inverse).diagonal().clamp(min=0).sqrt()
+    of_known = level * columns[samples:].T @ columns[samples:]
+    return (inverse @ (blocks.T @ blocks + of_known) @ inverse).diagonal().clamp(min=0).sqrt()
 
 
 def _scaled(columns: Tensor) -> Tensor:

@@ -21,6 +21,7 @@ from gear_damping.identification.output_error.uncertainty import QUANTILE
 
 SHARE = 0.1  # of what they would have in equal parts
 BLOCK_TIMES = 2.0  # characteristic times of a block, over which residuals may be correlated
+FEWEST_BLOCKS = 4  # of a record, however long that is: the scores of a single one cancel, as its strength is fitted
 
 
 @dataclass(frozen=True)
@@ -127,7 +128,8 @@ def _orthogonal_columns(
 
 def block_of(outcome: Outcome, evidence: Evidence) -> int:
     """Samples of a block, over which residuals may be correlated."""
-    return max(4, round(BLOCK_TIMES * time_scale(outcome.hypothesis, evidence) * evidence.sampling_rate))
+    samples = BLOCK_TIMES * time_scale(outcome.hypothesis, evidence) * evidence.sampling_rate
+    return max(4, round(min(samples, outcome.problem.response.length / FEWEST_BLOCKS)))
 
 
 def error_of(column: Tensor, residual: Tensor, block: int) -> Tensor:

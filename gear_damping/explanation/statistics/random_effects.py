@@ -13,6 +13,7 @@ from scipy.stats import chi2
 
 CONFIDENCE = 0.95  # of the interval of the deviation
 WIDEST = 1e3  # times the largest difference of two estimates: no deviation is sought beyond
+LEAST = 1e-9  # of the largest estimate or error: no estimate is known better
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,9 @@ class BetweenDeviation:
 
 def statistic(estimates: Sequence[float], errors: Sequence[float], deviation: float) -> float:
     """Cochran's Q of estimates whose groups differ by `deviation` beside their standard errors."""
-    values, variances = np.asarray(estimates, float), np.square(errors) + deviation**2
+    values = np.asarray(estimates, float)
+    least = LEAST * max(float(np.abs(values).max()), *errors)
+    variances = np.square(np.maximum(errors, least)) + deviation**2
     mean = (values / variances).sum() / (1 / variances).sum()
     return float(((values - mean) ** 2 / variances).sum())
 

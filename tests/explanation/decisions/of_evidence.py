@@ -110,7 +110,8 @@ def of_one_size(shifts: list[float], error: float, settings: SearchSettings, mov
         noise = torch.tensor([1.0, 1.0, -1.0, -1.0] * (length // 8) + [-1.0, -1.0, 1.0, 1.0] * (length // 8))
         residual[rows] = shift + error * length**0.5 / 2**0.5 * noise.double()
     parameter = SimpleNamespace(name="a.strength", logarithmic=True)
-    model = outcome(problem=SimpleNamespace(free=[parameter], n_shared=1), hypothesis=SimpleNamespace(effects=()))
+    problem = SimpleNamespace(free=[parameter], n_shared=1, response=SimpleNamespace(length=length))
+    model = outcome(problem=problem, hypothesis=SimpleNamespace(effects=()))
     model.linearisation = SimpleNamespace(sensitivity=torch.full((1, 1, 1, 1), moves), residual=[None])
     evidence = SimpleNamespace(settings=settings, sampling_rate=1.0, noise=1.0)
     with (
