@@ -42,8 +42,8 @@ class Rig:
         radian: One radian in the unit of the response; None where the response is no angle.
         mesh_harmonics: Harmonics of the mesh that the sampling of at least one record shows.
         lines: Orders of the pinion shaft at which most is left unexplained, the strongest first.
-        frequencies: In Hz, at which most is left unexplained away from its own, the strongest first; of a rig without
-            shafts.
+        frequencies: In Hz, at which most is left unexplained away from its own, the strongest first; of a rig with
+            shafts the one below that of its mesh, away from their orders.
         values: Parameters and derived quantities of the system by name, SI; of a mesh the `contact_ratio` too.
         indexed: Whether the angle of all records counts from one mark, so that a tooth has one number.
         traits: Those of the system.

@@ -1,6 +1,6 @@
 """What candidates may depend on: the rig of the records, and the orders at which something is left of them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import ceil, floor, log, pi, sqrt
 
 import torch
@@ -25,6 +25,8 @@ BAND = 1.02  # of a frequency, the width of a band in which energy is counted
 OWN = 1.2  # of a frequency: nearer, a mode is not told from its neighbour by a spectrum
 SWEPT = 2.0  # times the natural frequency: as far as an amplitude may pull that of the motion
 BLURRED = 3.0  # over the length of a record: as far as the window spreads a line, and half as much again
+WORTH = 0.02  # of what is left beside the orders: so little is nothing that a search goes on for
+FLANKS = 6.0  # over the length of a record: farther off the window has taken a line down by 60 dB
 HARMONICS = 5  # of the natural frequency that are no modes
 AROUND, STANDS_OUT = 10, 5.0  # bands at either side; times their median, from which a line stands out
 MODES = 2  # frequencies that are kept
@@ -66,6 +68,7 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
     values["contact_ratio"] = float(prepared.base["contact_ratio"][0])
     pinion, gear = round(values["n_teeth_pinion"]), round(values["n_teeth_gear"])
     lines = strongest_orders(residuals or (), pinion, gear, values["pinion_speed"])
+    common["frequencies"] = ringing_frequencies(residuals or (), pinion, gear, values)
     harmonics = max(_harmonics(record, pinion, values["pinion_speed"]) for record in evidence.fit)
     teeth = {"n_teeth_pinion": pinion, "n_teeth_gear": gear, "indexed": evidence.has_index}
     teeth["standing"] = all_stand(evidence.fit)
@@ -131,6 +134,39 @@ def strongest_frequencies(residuals: Residuals, natural: float) -> tuple[float, 
         found.append(float(middles[best]))
         energy[(middles / middles[best]).log().abs() < log(OWN)] = 0
     return tuple(found)
+
+
+def ringing_frequencies(residuals: Residuals, pinion: int, gear: int, values: Mapping[str, float]) -> tuple[float, ...]:
+    """The frequency in Hz below that of the mesh at which most is left away from orders of the shafts; or none.
+
+    Orders move with the speed, and what rings after a step of the torque stays.
+
+    Args:
+        residuals: Records with what is left of them, each (time,).
+        pinion: Teeth of the pinion.
+        gear: Teeth of the gear.
+        values: Those of the rig, with its natural frequency and the speed where a record does not say it.
+    """
+    highest = values["natural_frequency"] / (2 * pi) / OWN
+    lowest = max((FEWEST_CYCLES * r.sampling_rate / len(r.response) for r, _ in residuals), default=highest)
+    if lowest * BAND >= highest:
+        return ()
+    edges = lowest * BAND ** torch.arange(floor(log(highest / lowest) / log(BAND)) + 1, dtype=torch.float64)
+    energy, whole = torch.zeros(len(edges) - 1, dtype=torch.float64), 0.0
+    for record, left in residuals:
+        angle = shaft_angle(record, values["pinion_speed"])[: len(record.response)]
+        turning = torch.diff(angle).abs() * record.sampling_rate / (2 * pi)
+        slowest, fastest = float(turning.min()), float(turning.max())
+        power, frequency = _power(left[: len(record.response)] * record.weight, record.sampling_rate)
+        width = FLANKS * record.sampling_rate / len(record.response)
+        orders = [k * one for one in (1.0, pinion / gear) for k in range(1, GEAR_ORDERS + 1)]
+        for order in [*orders, *(k * pinion for k in range(1, HARMONICS + 1))]:
+            power[(frequency > order * slowest - width) & (frequency < order * fastest + width)] = 0
+        whole += float(power.sum())
+        inside = (frequency >= edges[0]) & (frequency < edges[-1])
+        energy.index_add_(0, torch.bucketize(frequency[inside], edges, right=True) - 1, power[inside])
+    best = int(torch.where(_stands_out(energy), energy, 0.0).argmax())
+    return (float(edges[best]) * sqrt(BAND),) if float(energy[best]) > WORTH * whole else ()
 
 
 def _power(series: Tensor, rate: float) -> tuple[Tensor, Tensor]:

@@ -1,7 +1,7 @@
 """Torsion of the shaft or coupling between a gear and the machine on its shaft."""
 
 from collections.abc import Mapping
-from math import inf
+from math import inf, pi
 from typing import Any, ClassVar
 
 import torch
@@ -23,9 +23,10 @@ MOST_DAMPED = 0.3  # twice what rubber couplings reach: a relative damping of 2 
 
 
 def _on_either_shaft(rig: Rig) -> tuple[Recipe, ...]:
+    """Of several softnesses, and of the one with which it rings where most is left."""
     return tuple(
         Recipe(
-            {"stiffness": k * _mesh_stiffness(rig, shaft)},
+            {"stiffness": k},
             non_nested=True,
             scanned={"motor_inertia": j * _inertia(rig, shaft), "damping_ratio": 0.02},
             in_si=True,
@@ -33,9 +34,17 @@ def _on_either_shaft(rig: Rig) -> tuple[Recipe, ...]:
             within=_of_a_machine(rig, shaft),
         )
         for shaft in SHAFTS
-        for k in SOFTNESS
         for j in INERTIAS
+        for k in (
+            *(soft * _mesh_stiffness(rig, shaft) for soft in SOFTNESS),
+            *(_ringing(frequency, j, _inertia(rig, shaft)) for frequency in rig.frequencies),
+        )
     )
+
+
+def _ringing(frequency: float, ratio: float, gears: float) -> float:
+    """The stiffness with which a machine of so many times the inertia of both gears swings against them, in N*m/rad."""
+    return (2 * pi * frequency) ** 2 * gears / (1 + 1 / ratio)
 
 
 def _of_a_machine(rig: Rig, shaft: str) -> dict[str, tuple[float, float]]:
