@@ -36,7 +36,7 @@ from gear_damping.explanation.steps.estimate import estimated
 from gear_damping.explanation.steps.never_dies import never_dies
 from gear_damping.explanation.steps.out_of_step import out_of_step
 from gear_damping.explanation.steps.polarity import polarity_fault
-from gear_damping.explanation.steps.too_short import left_out_ends, too_short
+from gear_damping.explanation.steps.too_short import least_t, left_out_ends, too_short
 from gear_damping.explanation.trials.bench import Bench, Log, nobody
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
@@ -158,7 +158,8 @@ def _of_evidence(
         noise_above(found.state.bench.floor, rmse(found.state.outcome.fit_residuals), evidence.channel) or "",
         INPUT_NOISE if evidence.input_noise else "",
     )
-    said = judged(found, [silent, short, *doubts, stretches.said], bool(short))
+    least = least_t(whole, state.nominal)
+    said = judged(found, [silent, short, *doubts, stretches.said], least)
     step(4, STEPS)
     return Explanation(report_fields.of_search(measurement, evidence, noise, said), evidence, noise, said.found)
 

@@ -8,6 +8,7 @@ from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.each_alone import followed_one_by_one
 from gear_damping.explanation.steps.faint import faint_cause, is_confirmed_beside
+from gear_damping.explanation.steps.hidden import cause_beside_random
 from gear_damping.explanation.steps.pairs import (
     with_pair,
     with_pair_instead,
@@ -125,6 +126,8 @@ def _with_more(state: State) -> tuple[State, bool]:
     if (instead := with_pair_of_a_nearer(state)) is not None:
         return instead, True
     state, best, rivals = _of_records_instead(*single_cause(state))
+    if best is None:
+        state, best, rivals = cause_beside_random(state)
     if best is None:
         further = with_pair(state) or cause_of_records(state)
     elif (further := _calibrated_anew(state, best)) is None:

@@ -15,6 +15,7 @@ from tests.explanation.decisions.made_up import NAMES, bench, fit, left, outcome
 from tests.explanation.decisions.of_trials import is_determined_within
 
 SHOWING, LARGE, SMALL = NAMES[:3]
+KIND = SimpleNamespace(cause=SimpleNamespace(simpler=None))
 OTHER, OF_RECORDS = (
     SimpleNamespace(name=name, candidate=SimpleNamespace(own_levels=own)) for name, own in (("other", 0), ("own", 1))
 )
@@ -138,6 +139,35 @@ def test_beside_a_cause_what_no_score_foresaw_has_to_take_most_of_what_is_left(m
 def test_beside_a_cause_a_promise_after_the_first_few_has_to_take_most_of_what_is_left(most, monkeypatch):
     """Otherwise a power law with an exponent of 1.02 halved the .003 % that a cubic spring leaves."""
     assert kept((0.1, 0.1, 0.1, 0.1, 0.9), NAMES[:4], most, monkeypatch, cheap=False) == [*NAMES[:4], *most]
+
+
+@pytest.mark.parametrize(
+    ("gain", "fit_gain", "rivals"),
+    [
+        (0.1, 60.0, (LARGE, SMALL)),
+        (0.1, 38.0, (SMALL,)),  # by less than the odds of 100 to 1
+        (-0.1, 60.0, (SMALL,)),  # left-out records refute it
+    ],
+)
+def test_what_tells_the_fitted_records_far_better_is_a_rival_though_nothing_confirms_it(
+    gain, fit_gain, rivals, monkeypatch
+):
+    """Of a friction in a rounded decay a hysteresis was named that left twenty noise variances more."""
+    fits = [fit(SHOWING, fit_gain=30.0), fit(LARGE, gain=gain, fit_gain=fit_gain), fit(SMALL, fit_gain=28.0)]
+    made = SimpleNamespace(
+        settings=SearchSettings(),
+        evidence=SimpleNamespace(has=lambda trait: False, library={SHOWING: KIND}),
+        encompasses=lambda *_: False,
+        converged=lambda one, _: one,
+        named_first=lambda first, others: (first, list(others)),
+    )
+    monkeypatch.setattr(faint, "_fitted", lambda *_: fits)
+    monkeypatch.setattr(faint, "_is_worth", lambda one, *_: one.name != LARGE)
+    monkeypatch.setattr(State, "is_validated", lambda *_: False)
+    visible = SimpleNamespace(shows=lambda name: True, by_name=dict.fromkeys(NAMES, 10.0))
+    scores = tuple(scored(place, 0.1) for place in range(3))
+    state = State(made, outcome(), outcome(), ranked=scores, left=SimpleNamespace(visible=visible))
+    assert faint_cause(state)[1:] == (fits[0], rivals)
 
 
 @pytest.mark.parametrize(("every", "kept"), [(False, 4), (True, 6)])

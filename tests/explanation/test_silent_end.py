@@ -1,11 +1,14 @@
 """A decay that has died away is judged by the end of its motion, and not by the noise behind it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
 from hidden.oscillator.inputs import NONE
 from hidden.oscillator.laws import members
 from hidden.oscillator.motion import between, move
+from scipy.signal import lfilter
 
 from gear_damping.explanation.evidence.records import evidence_of
 from gear_damping.explanation.evidence.silent_end import audible_samples
@@ -29,6 +32,17 @@ def test_it_ends_where_the_motion_meets_the_noise(ratio):
     found = audible_samples(record_of(ratio, 30.0)) / RATE
     # where cos^2 averaged over a period has the power of the noise
     meets = np.log(1 / (np.sqrt(2) * NOISE)) / (ratio * 2 * np.pi * FREQUENCY)
+    assert meets - 1.0 < found < meets + 1.0
+
+
+@pytest.mark.parametrize("ratio", [0.01, 0.03])
+def test_a_noise_of_the_first_order_is_no_motion_either(ratio):
+    """Its spectrum above the signal lies far below its variance: every block of it seemed to move."""
+    record = record_of(ratio, 30.0)
+    noise = lfilter([1], [1, -0.9], np.random.default_rng(3).standard_normal(len(record.response)))
+    coloured = replace(record, response=record.response + 3 * NOISE * torch.tensor(noise / noise.std()))
+    found = audible_samples(coloured) / RATE
+    meets = np.log(1 / (np.sqrt(2) * 3 * NOISE)) / (ratio * 2 * np.pi * FREQUENCY)
     assert meets - 1.0 < found < meets + 1.0
 
 

@@ -34,7 +34,7 @@ AT_BOUND = "but has run into a bound of what it can be."
 WITHIN_FORM = "`{}` would take a little more: so little may as well be the form of the other causes, and is not named."
 
 
-def judged(found: Confirmed, notes: Sequence[str], is_short: bool = False) -> Judged:
+def judged(found: Confirmed, notes: Sequence[str], least_t: float = 0.0) -> Judged:
     """The state with its verdict.
 
     Where causes are refused for one among them that is none, those that are left are judged without it. And where
@@ -43,17 +43,17 @@ def judged(found: Confirmed, notes: Sequence[str], is_short: bool = False) -> Ju
     Args:
         found: The search with its held-out records.
         notes: What is said beside the verdict.
-        is_short: Whether the held-out records are too short to judge more than large effects.
+        least_t: Of held-out records that are short, for a cause that is no large one to be established.
     """
     found, small = _without_form(found)
     notes = (*notes, *map(WITHIN_FORM.format, small))
-    said, (doubtful, why) = _judged(found, notes, is_short)
+    said, (doubtful, why) = _judged(found, notes, least_t)
     fewer = said
     while fewer.verdict.word == UNEXPLAINED and len(fewer.found.accepted) > 1:
         if not doubtful:  # more search must not lose what less of it had found
             doubtful, why = fewer.found.accepted[-1].name, SO_MUCH
         found, notes = without(found, doubtful), (*notes, TOO.format(doubtful, why or AT_BOUND))
-        fewer, (doubtful, why) = _judged(found, notes, is_short)
+        fewer, (doubtful, why) = _judged(found, notes, least_t)
     return _reported(said if fewer.verdict.word == UNEXPLAINED else fewer)
 
 
@@ -103,7 +103,7 @@ def _reported(said: Judged) -> Judged:
     return replace(said, found=replace(state, outcome=of_unit_spread(positive(state.outcome, tried), tried)))
 
 
-def _judged(found: Confirmed, notes: Sequence[str], is_short: bool) -> tuple[Judged, tuple[str, str]]:
+def _judged(found: Confirmed, notes: Sequence[str], least_t: float) -> tuple[Judged, tuple[str, str]]:
     """The state with its verdict, and a cause that may be none with the reason; both empty where there is no such."""
     state, before, after = found.state, found.before, found.after
     evidence, settings, budget = state.bench.evidence, state.bench.settings, state.bench.budget
@@ -126,7 +126,7 @@ def _judged(found: Confirmed, notes: Sequence[str], is_short: bool) -> tuple[Jud
         is_untold=is_untold(state),
         shape=shape_without_name(state),
         not_random=_not_random(state),
-        is_short=is_short,
+        is_short=found.t < least_t,
         any_figures=unknown,
         scattered=scattered,
         is_stated_otherwise=bool(contradicts_stated(state.nominal, evidence)),

@@ -60,7 +60,15 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     if simpler:
         rivals = [fit for fit in (first, *rivals) if fit is not simpler[0]]
         first = simpler[0]
+    first, rivals = bench.named_first(first, rivals)
+    nearer = [fit for fit in fits if fit not in worth and _is_nearer(fit, first, bench)]
+    rivals = [*sorted(nearer, key=lambda fit: -fit.fit_gain), *rivals]
     return state, first, tuple(fit.name for fit in rivals)
+
+
+def _is_nearer(fit: Refit, first: Refit, bench: Bench) -> bool:
+    """Whether a law that left-out records do not confirm, and do not refute, tells the fitted ones far better."""
+    return fit.gain > 0 and fit.fit_gain > first.fit_gain + bench.settings.rival_evidence
 
 
 def is_confirmed_beside(before: Outcome, fit: Refit, state: State) -> bool:

@@ -16,7 +16,7 @@ from gear_damping.explanation.trials.assess import Assessment, assessed
 from gear_damping.explanation.trials.comparison import Comparison
 from gear_damping.explanation.trials.refit import Refit, chosen, compared, refitted, with_later
 from gear_damping.explanation.trials.score import Score, Scoring, contains, scores
-from gear_damping.explanation.trials.told_size import is_told
+from gear_damping.explanation.trials.told_size import has_figure, is_told
 from gear_damping.identification.output_error.least_squares import Ends, Fitted, Rounds
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 from gear_damping.physics.systems.traits import Trait
@@ -251,10 +251,18 @@ class Bench(Comparison):
         inner = [f for f in alike if any(contains(o.score, f.score) for o in alike if o.name != f.name)]
         outer = {f.name for f in alike if any(contains(f.score, o.score) for o in inner if o.name != f.name)}
         kept = self._not_encompassed(best, [f for f in alike if f.name not in outer] or alike)
-        near = [f for f in kept if f.gain >= self.settings.rival_share * best.gain]
-        first = self._within_bounds(smallest(self._sized(near or kept)), fits)
+        sized = self._sized(kept)
+        near = [f for f in sized if f.gain >= self.settings.rival_share * best.gain]
+        first = self._within_bounds(smallest(near or sized), fits)
         plain = self._plain_form(first, fits)
         return plain, self.rivals(plain.name, [f.name for f in kept if f.name != first.name])
+
+    def named_first(self, best: Refit, rivals: Sequence[Refit]) -> tuple[Refit, list[Refit]]:
+        """Of explanations not told apart that fit about as well: the one of a known size with fewest figures."""
+        alike = [best, *rivals]
+        near = [fit for fit in alike if fit.fit_gain >= self.settings.rival_share * best.fit_gain]
+        first = smallest(self._sized(near))
+        return first, [fit for fit in alike if fit is not first]
 
     def rivals(self, name: str, others: Iterable[str]) -> tuple[str, ...]:
         """The other effects of several, each once, but for what contains this one, of which it is the simpler form.
@@ -272,13 +280,19 @@ class Bench(Comparison):
         return fits if len(fits) == 1 else [fit for fit in fits if self._is_sized(fit)] or fits
 
     def _is_sized(self, fit: Refit) -> bool:
-        return fit.outcome.is_finite and is_told(fit.outcome, fit, self.evidence)
+        told = fit.outcome.is_finite and is_told(fit.outcome, fit, self.evidence)
+        return told and has_figure(fit.outcome, fit, self.evidence)
 
     def _plain_form(self, fit: Refit, fits: Sequence[Refit]) -> Refit:
-        """A law, or the simpler one that it contains where it takes too little of what that leaves."""
+        """A law, or the simpler one that it contains where it takes too little of what that leaves or has no size."""
         simpler = self.evidence.library[fit.name].cause.simpler
         plain = [one for one in fits if one.name == simpler and one.is_seen_in_fit]
-        return next((one for one in plain if not self.is_further(fit.outcome, one.outcome)), fit)
+        return next((one for one in plain if self._is_plainer(one, fit)), fit)
+
+    def _is_plainer(self, simpler: Refit, fit: Refit) -> bool:
+        if not self.is_further(fit.outcome, simpler.outcome):
+            return True
+        return self._is_sized(simpler) and not self._is_sized(fit)
 
     def _not_encompassed(self, best: Refit, alike: Sequence[Refit]) -> list[Refit]:
         """Those that the best explanation does not beat by what the other leaves."""

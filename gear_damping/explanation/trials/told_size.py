@@ -61,6 +61,12 @@ def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
     return max(_statistic(outcome, column, lags) for column in alone) > limit
 
 
+def has_figure(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
+    """Whether one figure at least of a cause is known within itself, by the noise, or the cause has none."""
+    phases = refit.score.candidate.names_of_phases
+    return not without_a_figure(outcome, [refit.name], covariance_of(outcome, evidence), evidence, phases)
+
+
 def without_a_figure(
     outcome: Outcome, names: Sequence[str], covariances: Tensor, evidence: Evidence, phases: Collection[str] = ()
 ) -> str:
