@@ -37,6 +37,7 @@ _ENDS = 2  # samples of a lower rate, which depend on how the signal is thought 
 _TEETH = tuple(GEOMETRY.values())
 _GEOMETRY = (*_TEETH, *NEEDED)
 _STANDS = 0.1  # of the largest speed: what a vibration's mean is below and that of a shaft that turns is not
+LONG_BEHIND = 0.1  # of a record: clocks that are stopped by hand, one after the other, differ by less
 MORE_STAMPS = 2.0  # times the rate of a record: what stamps then hold between two samples is lost
 _OTHERWISE = 0.1  # of a condition: no two instruments differ by so much
 _INERTIAS = ("inertia_pinion", "inertia_gear")
@@ -162,7 +163,7 @@ class Assembler:
                 message = f"{one.lost} pulses are missing between others, the first after {one.lost_after:.6g} s; "
                 message += "the turn of the shaft there is counted as if they were there"
                 findings.append(Finding("lost_pulses", message, channel=name, severity="note"))
-            notes += _folded_back(name, one, raw.base)
+            notes += [*_folded_back(name, one, raw.base), *_going_on(name, one, raw)]
         told = raw.angles.get("pinion", raw.angles.get("tacho"))
         if told is None and "pinion_angle" not in channels and "gear" in raw.angles:
             told = self._behind_the_gear(raw.angles["gear"], f"{raw.plan.key}.encoders.gear", notes)
@@ -334,6 +335,19 @@ def _folded_back(name: str, shaft: ShaftAngle, base: TimeBase) -> list[str]:
         f"{name}: its stamps come {shaft.stamped_rate:.3g} times a second, and the angle is taken at {rate:.6g} Hz, so "
         f"that motions above {rate / 2:.6g} Hz are folded back onto lower ones: give a sampling_rate near that of the "
         "stamps, and resample for a lower one"
+    ]
+
+
+def _going_on(name: str, shaft: ShaftAngle, raw: RawRecord) -> list[str]:
+    """What is said of stamps that go on long behind the end of a record that is taken whole."""
+    first, last = float(raw.base.time[0]), float(raw.base.time[-1])
+    is_whole = raw.plan.rows is None and raw.plan.window is None
+    if not is_whole or shaft.stamps_end - last <= LONG_BEHIND * (last - first):
+        return []
+    rate = (shaft.values.size - 1) / (shaft.stamps_end - first)
+    return [
+        f"{name}: its stamps go on until {shaft.stamps_end:.6g} s, and the samples end at {last:.6g} s: check the "
+        f"sampling rate and the unit of the stamps; at {rate:.6g} Hz both end together"
     ]
 
 

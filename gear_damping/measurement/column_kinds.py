@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from gear_damping.measurement.angular_error import turn_in
 
-TIME, CONSTANT, EMPTY, UNREADABLE, TURNING, COUNTER, PULSES, SIGNAL, ROW_NUMBER, ELSEWHERE = (
+TIME, CONSTANT, EMPTY, UNREADABLE, TURNING, COUNTER, PULSES, SIGNAL, ROW_NUMBER, ELSEWHERE, EDGES = (
     "time stamps", "constant", "empty", "not readable", "turning angle", "counter", "pulses", "signal", "row number",
-    "another record",
+    "another record", "times of pulses",
 )  # fmt: skip
 ANGLE = re.compile(r"angle|winkel|[aáâ]ngulo|angolo|theta|phi|phase|encoder|azimuth|rotation|revol|position", re.I)
 MOTION = re.compile(r"accel|veloc|displac|force|torque", re.I)  # what bears such a name is no pulse train
@@ -23,6 +23,7 @@ _FEWEST_PLACES = 8  # of a turn, assumed: what has fewer values is switched, and
 _NUMBERED = {"sample", "frame", "index", "idx", "row", "seq", "sequence", "packet"}  # what is numbered, and no shaft
 _NUMBER_OF = {"no", "nr", "num", "number", "id"}  # words behind these
 _WORDS = re.compile(r"[\W_]+|(?<=[a-z])(?=[A-Z])")  # what is between those of a name
+_FEWEST_EDGES = 16  # values that rise, of another number than the samples: fewer may be a list of settings
 _NEAR_TURN = 0.03  # of a turn: a ramp that ends so near to it wraps there
 
 
@@ -47,6 +48,14 @@ def kind_of(values: NDArray[np.float64], name: str, unit: str | None) -> tuple[s
         if found is not None:
             return found
     return SIGNAL, ""
+
+
+def may_be_edges(values: NDArray[np.float64]) -> bool:
+    """Whether (n,) values, of which there are not as many as samples, rise at each, as the times of a shaft's pulses.
+
+    What goes on by 1 numbers something.
+    """
+    return values.size >= _FEWEST_EDGES and bool(np.all(np.diff(values) > 0)) and not counts_rows(values)
 
 
 def counts_rows(values: NDArray[np.float64]) -> bool:

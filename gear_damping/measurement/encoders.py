@@ -44,6 +44,7 @@ class ShaftAngle:
         lost: How many pulses are missing between others; their turns are counted.
         lost_after: Time in s of the last pulse before the first that is missing.
         stamped_rate: Stamps a second, in Hz, of a shaft whose pulses are stamped by a clock; 0.0 of any other.
+        stamps_end: Time in s of the last of these stamps; 0.0 of any other shaft.
     """
 
     values: NDArray[np.float64]
@@ -51,6 +52,7 @@ class ShaftAngle:
     lost: int = 0
     lost_after: float = 0.0
     stamped_rate: float = 0.0
+    stamps_end: float = 0.0
 
 
 def angle_from_counts(counts: NDArray[np.float64], per_revolution: float, direction: int = 1) -> NDArray[np.float64]:
@@ -274,8 +276,8 @@ def shaft_angle(plan: EncoderPlan, base: TimeBase, rows: ReadColumn, whole: Read
     angle = angle_from_pulses(pulses, time, plan.per_revolution, plan.direction, key, file)
     zero = 0.0 if plan.index is None else _at_index_stamp(plan, angle, time, whole, file)
     gaps = np.diff(pulse_numbers(pulses)) - 1
-    rate = 1 / float(np.median(np.diff(pulses))) if plan.timestamps else 0.0
-    return ShaftAngle(angle - zero, late, int(gaps.sum()), float(pulses[int((gaps > 0).argmax())]), rate)
+    rate, end = (1 / float(np.median(np.diff(pulses))), float(pulses[-1])) if plan.timestamps else (0.0, 0.0)
+    return ShaftAngle(angle - zero, late, int(gaps.sum()), float(pulses[int((gaps > 0).argmax())]), rate, end)
 
 
 def pulse_times(plan: EncoderPlan, whole: ReadColumn, file: str) -> NDArray[np.float64]:

@@ -6,7 +6,7 @@ from math import pi
 import numpy as np
 
 from gear_damping.measurement.angular_error import base_radius
-from gear_damping.measurement.record import Measurement, Quantity, Record
+from gear_damping.measurement.record import Channel, Measurement, Quantity, Record
 from gear_damping.units import parse_unit
 
 Stated = Mapping[str, Quantity]
@@ -14,6 +14,7 @@ Stated = Mapping[str, Quantity]
 WAVE = ("mesh_stiffness_max", "mesh_stiffness_min", "contact_ratio")
 INERTIAS = ("inertia_pinion", "inertia_gear")
 RESPONSE = "transmission_error"
+FAR = 3.0  # times what the stated stiffness says: that of a pair is known to a fifth, and half of it stands for a pitch
 
 
 def natural_frequency(measurement: Measurement) -> float | None:
@@ -59,8 +60,21 @@ def of_record(measurement: Measurement, record: Record) -> str:
         channel = record.channels.get(RESPONSE)
         unit = channel.declared_unit if channel else "um"
         pressed = abs(torque) / radii[0] / stiffness / parse_unit(unit).factor
-        said.append(f"the mean torque presses them by {pressed:.3g} {unit}")
+        said.append(f"the mean torque presses them by {pressed:.3g} {unit}{_otherwise(channel, pressed, unit)}")
     return ", ".join(said)
+
+
+def _otherwise(channel: Channel | None, pressed: float, unit: str) -> str:
+    """What is said where a transmission error that counts from the unloaded contact lies far from what it should be."""
+    if channel is None or channel.datum != "absolute":
+        return ""
+    mean = abs(float(channel.values.mean())) / parse_unit(unit).factor
+    if pressed / FAR < mean < FAR * pressed:
+        return ""
+    return (
+        f", and its mean, counted from the unloaded contact, is {mean:.3g} {unit}: check the torque, the stiffness and "
+        "their units, or leave out datum: absolute"
+    )
 
 
 def _radii(stated: Stated) -> tuple[float, ...]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError
 from gear_damping.measurement.column_kinds import (
     COUNTER,
+    EDGES,
     PULSES,
     TURNING,
     counts_of_turn,
@@ -141,6 +142,9 @@ def system_of(found: Inspection) -> tuple[str, str]:
             return GEAR, f"the name of column '{column.reference}'"
         if column.kind in (TURNING, COUNTER):
             return GEAR, f"column '{column.reference}' may be of a shaft that turns: {column.says}"
+    edges = next((column for column in found.columns if column.kind == EDGES), None)
+    if edges is not None:
+        return GEAR, f"column '{edges.reference}' may be of a shaft that turns: its values {edges.says}"
     pulses = [column for column in found.measured if column.kind == PULSES]
     driven = {_oscillator_channel(column)[0] for column in found.measured} & {"displacement", "force"}
     named = [column for column in pulses if _TACHO.search(_plain(column))]

@@ -12,6 +12,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.by_turns import seen_by_turns
 from gear_damping.measurement.column_kinds import (
     CONSTANT,
+    EDGES,
     ELSEWHERE,
     EMPTY,
     ROW_NUMBER,
@@ -21,6 +22,7 @@ from gear_damping.measurement.column_kinds import (
     UNREADABLE,
     counts_rows,
     kind_of,
+    may_be_edges,
     turn_of,
 )
 from gear_damping.measurement.formats.blocks import listed, overlapping
@@ -155,7 +157,7 @@ def inspect_table(table: Table, clock: str | int | None = None) -> Inspection:
     """
     _refuse_lying(table)
     columns = [_column(table, index) for index in range(len(table.names))]
-    columns = _of_one_group(columns) if isinstance(table, ArrayTable) else columns
+    columns = _of_one_group(columns) if table.has_groups else columns
     if not any(column.values.size for column in columns):
         rule = f"no column holds numbers; the first: {columns[0].says}"
         raise InputError(Problem("file", rule, str(table.path), "export the channels as numbers"))
@@ -443,6 +445,8 @@ def _seen(
         return replace(column, kind=TIME, says="advances, and may be counted from 1970: another clock")
     if stamps is not None and (other := named_clock(column)):
         return replace(column, kind=TIME, says=f"{other.says}: another clock", stamps=other)
+    if column.values.size != length and column.unit in (None, *ENDINGS) and may_be_edges(column.inside):
+        return replace(column, kind=EDGES, says="rise at each: perhaps the times at which a shaft's pulses begin")
     own = clock[1] if clock else None
     rate = base.sampling_rate if base is not None and column.values.size == length else own
     seen = replace(column, kind=kind, says=says, rate=rate)

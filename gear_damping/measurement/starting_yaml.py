@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from gear_damping.measurement.angular_error import is_angle
-from gear_damping.measurement.column_kinds import ELSEWHERE
+from gear_damping.measurement.column_kinds import EDGES, ELSEWHERE
 from gear_damping.measurement.files import UNKNOWN
 from gear_damping.measurement.guessing import GEAR, Guess, is_linear_speed
 from gear_damping.measurement.inspection import Inspection
@@ -44,7 +44,7 @@ def starting_yaml(found: Inspection, system: tuple[str, str], listed: Sequence[G
         *(f"      {line}" for line in (*_time(found), *_channels(found, system[0], listed))),
     ]
     if system[0] == GEAR:
-        lines += _gear(listed)
+        lines += _gear(found, listed)
     return "\n".join([*lines, *_left_out(found, listed)]) + "\n"
 
 
@@ -154,12 +154,16 @@ def _parameters(system: str, listed: Sequence[Guess]) -> list[str]:
     return lines
 
 
-def _gear(listed: Sequence[Guess]) -> Iterator[str]:
+def _gear(found: Inspection, listed: Sequence[Guess]) -> Iterator[str]:
     """Encoders, and the conditions that a gear pair needs where nothing measured them."""
     used = {guess.channel: guess for guess in listed if guess.used}
     encoders = [name for name in _ENCODERS if name in used]
-    if encoders:
+    edges = [column for column in found.columns if column.kind == EDGES]
+    if encoders or edges:
         yield "    encoders:"
+    for column in edges:
+        stated = {"timestamps": column.reference, "unit": column.unit or UNKNOWN, _COUNTS["pinion"]: UNKNOWN}
+        yield f"      pinion: {_mapping(stated)}   # guess: its values {column.says}; or gear, or tacho"
     if "gear" in used and "pinion" not in used:
         yield f"      pinion: {_mapping({'column': UNKNOWN, 'counts_per_revolution': UNKNOWN})}   # beside the gear's"
     for name in encoders:
@@ -168,7 +172,7 @@ def _gear(listed: Sequence[Guess]) -> Iterator[str]:
         twice = "# " if name == "tacho" and "pinion" in used else ""
         yield f"      {twice}{name}: {_mapping(stated)}   # guess: {used[name].why}"
     missing = {}
-    if not used.keys() & {"pinion_angle", "pinion_speed", "pinion", "gear", "tacho"}:
+    if not edges and not used.keys() & {"pinion_angle", "pinion_speed", "pinion", "gear", "tacho"}:
         missing["pinion_speed"] = "rpm"
     is_casing = "acceleration" in used and not _is_of_a_shaft(used["acceleration"], GEAR)
     if "pinion_torque" not in used and (not is_casing or used.keys() & _WITH_TORQUE):
@@ -190,7 +194,7 @@ def _left_out(found: Inspection, listed: Sequence[Guess]) -> Iterator[str]:
     if numbers:
         yield f"    # not declared: single numbers: {', '.join(_scalar(column.reference) for column in numbers)}"
     for column in found.columns:
-        if column in numbers or column.kind == ELSEWHERE:
+        if column in numbers or column.kind in (EDGES, ELSEWHERE):
             continue
         guess = told.get(id(column))
         if column is stamps or (guess is not None and guess.channel):

@@ -259,7 +259,7 @@ def _by_unit(index: int, column: _Column) -> str:
 
 def _by_name(index: int, column: _Column) -> str:
     named = NAMED.search(_bare(column.reference)) or time_at_end(column.reference)
-    free = column.unit is None or is_time(column.unit)
+    free = column.unit is None or _time_unit(column.unit) is not None
     return "advances and is named like a time" if named and free and _advances(column) else ""
 
 
@@ -388,6 +388,11 @@ def numbers_left_out(values: NDArray[np.float64]) -> tuple[int, int] | None:
     return int(np.argmax(steps > 1)), int(np.sum(steps - 1))
 
 
+def _time_unit(unit: str | None) -> str | None:
+    """A unit of time, in small letters where the file has it in large ones, as `Time (S)`; None of any other."""
+    return next((one for one in (unit, unit and unit.lower()) if is_time(one)), None)
+
+
 def is_time(unit: str | None) -> bool:
     """Whether a unit is one of time."""
     return is_of_kind(unit, "s")
@@ -401,8 +406,8 @@ def _unit_from_1970(stamp: float, step: float) -> str | None:
 
 def _unit(column: _Column) -> tuple[str, str]:
     """The unit of the stamps, and why where the file does not say it."""
-    if is_time(column.unit):
-        return column.unit, ""
+    if unit := _time_unit(column.unit):
+        return unit, ""
     if unit := unit_by_name(column.reference):
         return unit, "from its name"
     first, step = float(column.inside[0]), float(np.median(np.diff(column.inside)))

@@ -39,6 +39,20 @@ def test_a_gear_pair_is_foretold_by_its_figures(rig):
     assert said.endswith(" um")
 
 
+@pytest.mark.parametrize(
+    ("mean_um", "datum", "is_doubted"),
+    [(18.5, "absolute", False), (-18.5, "absolute", False), (1.85, "absolute", True), (1.85, "arbitrary", False)],
+)
+def test_a_mean_far_from_what_the_torque_makes_is_doubted(rig, mean_um, datum, is_doubted):
+    """A torque with a gain of .1 pressed teeth by 191 um that gave way by 20."""
+    name = rig.channels["transmission_error"]["column"]
+    rig.columns[name] = rig.columns[name] - rig.columns[name].mean() + mean_um
+    rig.channels["transmission_error"] |= {"datum": datum, "unit": "um"}
+    measurement = rig.load()
+    said = of_record(measurement, measurement.records[0])
+    assert (", and its mean, counted from the unloaded contact, is 1.85 um" in said) == is_doubted
+
+
 @pytest.mark.parametrize(("inertia", "is_doubted"), [("0.0012 kg*m^2", False), ("0.0012 kg*cm^2", True)])
 def test_a_natural_frequency_beyond_the_records_is_doubted(rig, inertia, is_doubted):
     rig.content["parameters"]["inertia_pinion"] = inertia

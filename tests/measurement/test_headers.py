@@ -431,3 +431,17 @@ def test_rows_with_a_label_above_the_first_column_are_names_and_units(tmp_path, 
     assert [table.unit(k) for k in range(3)] == [None, "mm", "N"]
     assert table.values(1)[0] == 0
     assert table.lengths == (50, 50, 50)
+
+
+@pytest.mark.parametrize("last", ["# ", "#", "#\t"])
+def test_names_parted_by_blanks_in_a_comment_above_an_empty_one_are_read(tmp_path, last):
+    lines = ["# run end = 2017-03-30 11:52:49", "#  Time (S)   sumSignal  LR_Signal", last, *rows(40, 3, "\t")]
+    table = table_of(tmp_path, lines)
+    assert table.names == ("Time (S)", "sumSignal", "LR_Signal")
+    found = inspect_table(table)
+    assert (found.time.index, found.time.unit) == (0, "s")
+
+
+def test_prose_in_a_comment_names_no_columns(tmp_path):
+    table = table_of(tmp_path, ["# a run:  with weight,  at noon", *rows(40, 3, "\t")])
+    assert table.names == ("", "", "")

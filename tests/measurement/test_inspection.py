@@ -2,6 +2,7 @@
 
 import h5py
 import numpy as np
+import openpyxl
 import pytest
 from scipy.io import savemat
 
@@ -83,6 +84,23 @@ def test_groups_with_members_of_the_same_names_are_records_of_their_own(tmp_path
     text = starting_yaml(found, system_of(found), guesses(found, "oscillator"))
     assert "# further records: low/acc, low/volt, up/acc, up/volt" in text
     assert "guess: what the file calls fs" in text
+
+
+def test_sheets_of_the_same_columns_are_records_of_their_own(tmp_path):
+    """Of four sheets the draft took time and torque from one and the angle from another, which had as many rows."""
+    book = openpyxl.Workbook()
+    for place, (title, rows) in enumerate((("run-up", 900), ("steps", 700), ("steady", 700))):
+        sheet = book.create_sheet(title, place)
+        sheet.append(["t [s]", "x [mm]", "F [N]"])
+        for k in range(rows):
+            sheet.append([k / 1000, np.sin(0.3 * k + place), np.cos(0.3 * k)])
+    del book["Sheet"]
+    book.save(tmp_path / "runs.xlsx")
+    found = inspect_table(read_table(tmp_path / "runs.xlsx"))
+    names = {str(c.reference) for c in found.measured} | {str(found.columns[found.time.index].reference)}
+    assert names == {"run-up/t [s]", "run-up/x [mm]", "run-up/F [N]"}
+    text = starting_yaml(found, system_of(found), guesses(found, "oscillator"))
+    assert '# further records: "steps/t [s]", "steps/x [mm]"' in text
 
 
 def test_of_groups_with_rates_of_their_own_that_of_the_proposed_column_is_taken(tmp_path):
@@ -445,3 +463,23 @@ def test_the_letter_of_a_component_is_no_name(name, channel, why, tmp_path):
     (tmp_path / "a.csv").write_text(f"time,{name}\n{rows}\n")
     _, _, (guess,) = guessed(read_table(tmp_path / "a.csv"))
     assert (guess.channel, guess.why) == (channel, why)
+
+
+def test_values_that_rise_and_are_of_another_number_may_be_the_times_of_pulses(tmp_path):
+    """A laser on a rim beside 6839 stamps of a counter was drafted as an oscillator, without a word of them."""
+    edges = np.cumsum(40 + np.random.default_rng(1).uniform(0, 1, 300))
+    np.savez(tmp_path / "m1.npz", speed=4377 + np.sin(0.3 * np.arange(1200)), edges=edges)
+    found, system, listed = guessed(read_table(tmp_path / "m1.npz"))
+    assert column(found, "edges").kind == "times of pulses"
+    assert system[0] == "gear_pair"
+    text = starting_yaml(found, system, listed)
+    assert 'pinion: {timestamps: edges, unit: "???", counts_per_revolution: "???"}' in text
+    assert "not declared: column edges" not in text
+
+
+@pytest.mark.parametrize("values", [np.arange(300.0), np.arange(8.0) ** 2, np.sin(np.arange(300.0))])
+def test_numbers_few_values_and_those_that_fall_are_none(tmp_path, values):
+    np.savez(tmp_path / "m1.npz", speed=np.sin(0.3 * np.arange(1200)), edges=values)
+    found, system, _ = guessed(read_table(tmp_path / "m1.npz"))
+    assert column(found, "edges").kind != "times of pulses"
+    assert system[0] == "oscillator"

@@ -122,6 +122,25 @@ def test_a_wheel_that_has_lost_pulses_is_said(bench):
     ]
 
 
+@pytest.mark.parametrize(
+    ("rate", "cut", "said"), [(1250.0, {}, True), (1000.0, {}, False), (1250.0, {"slice": [0, 600]}, False)]
+)
+def test_stamps_that_go_on_behind_a_whole_record_are_said(bench, rate, cut, said):
+    """A record of 40 kHz that was declared as 50 ended at .24 s, and its stamps at .3."""
+    pulses = running_up(60)
+    samples = np.arange(round(1000 * pulses[-1]))
+    _rig(bench, x=np.sin(0.05 * samples), p=np.r_[pulses, np.full(len(samples) - len(pulses), np.nan)])
+    record = bench.content["records"][0]
+    record |= cut
+    record["channels"] = {**record["channels"], "transmission_error": {"column": "x", "unit": "um"}}
+    record["channels"].pop("time", None)
+    record["channels"]["sampling_rate"] = f"{rate} Hz"
+    record["encoders"] = {"tacho": {"timestamps": "p", "unit": "s", "pulses_per_revolution": 60, "direction": 1}}
+    notes = [note for note in bench.load_as_it_is().records[0].notes if "its stamps go on" in note]
+    assert len(notes) == said
+    assert not said or "at 999.113 Hz both end together" in notes[0]
+
+
 def test_edges_are_found_between_samples():
     time = np.arange(1000) / 1000
     edges = rising_edges(np.sin(2 * pi * 7.3 * time - 1), time, 0.0)

@@ -214,7 +214,7 @@ def _names(row: Sequence[str], width: int) -> Sequence[str]:
 
     Names with blanks or another sign between them may stand above values with other signs between them.
     """
-    if filled(row) == 1 < width and (said := _parted_otherwise(row[0], width)):
+    if filled(row) == 1 < width and (said := parted_otherwise(row[0], width)):
         return said
     if filled(row) <= width and row[0].strip() not in _COMMENTS:
         return row
@@ -229,12 +229,15 @@ def _names(row: Sequence[str], width: int) -> Sequence[str]:
     return joined if len(joined) == width else row
 
 
-def _parted_otherwise(line: str, width: int) -> list[str]:
+def parted_otherwise(line: str, width: int) -> list[str]:
     """The names that a line holds without the sign between the values, as many as these; [] where it holds none."""
     for sign in _CELL_SIGNS:
         cells = [cell.strip() for cell in line.split(sign)]
         if len(cells) == width and all(_IS_NAME.search(cell) for cell in cells):
             return cells
+    apart = [cell for cell in re.split(r"\s{2,}", line.strip()) if cell]
+    if len(apart) == width and all(_IS_NAME.search(cell) and not _IN_PROSE.search(cell) for cell in apart):
+        return apart
     words = line.split()
     is_prose = any(_IN_PROSE.search(word) or not _IS_NAME.search(word) for word in words)
     return words if len(words) == width and not is_prose else []

@@ -57,6 +57,7 @@ class Table(ABC):
         self.full_scale: float | None = None  # the value of full scale, where samples are fractions of it
         self.not_applied: dict[str, dict[str, float]] = {}  # factors and zeros beside arrays, by the name of these
         self.notes: tuple[str, ...] = ()
+        self.has_groups = False  # whether names are paths, of groups of arrays or sheets of columns
 
     @abstractmethod
     def values(self, index: int) -> NDArray[np.float64]:
@@ -230,7 +231,7 @@ class ArrayTable(Table):
         if not held:
             rule = "holds no array of real numbers" + (f", only {', '.join(left_out[:_SHOWN])}" if left_out else "")
             raise InputError(Problem("file", rule, str(path), "save the channels as numeric vectors or matrices"))
-        self._held, self._arrays = list(held), {}
+        self._held, self._arrays, self.has_groups = list(held), {}, True
         clocks = {one.clock for one in held}
         if len(clocks) == 1 and None not in clocks:
             self.sampling_rate = held[0].clock[1]

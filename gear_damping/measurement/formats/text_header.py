@@ -6,7 +6,14 @@ from itertools import islice
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.formats.cells import unit_in
-from gear_damping.measurement.formats.header import Header, filled, find_header, is_units, known_header
+from gear_damping.measurement.formats.header import (
+    Header,
+    filled,
+    find_header,
+    is_units,
+    known_header,
+    parted_otherwise,
+)
 from gear_damping.measurement.formats.moments import is_told
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written
 from gear_damping.measurement.formats.text_lines import HEAD, ONE_COLUMN, Text
@@ -89,7 +96,9 @@ def _behind_a_note(rows: list[list[str]], first: int, width: int) -> tuple[int, 
 
 def _of_comments(rows: list[list[str]], sign: str, width: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names in the last comment before the values, or above it where that holds their units; else empty ones."""
-    said = [[cell.strip() for cell in sign.join(row).lstrip("# ").split(sign)] for row in rows[-2:]]
+    told = [sign.join(row).lstrip("# \t") for row in rows]
+    said = [[cell.strip() for cell in line.split(sign)] for line in told if line.strip(f" \t{sign}")][-2:]
+    said = [row if len(row) == width else parted_otherwise(sign.join(row), width) or row for row in said]
     *above, last = said or [[]]
     if above and len(above[0]) == len(last) == width and is_units(last):
         return tuple(above[0]), tuple(last)

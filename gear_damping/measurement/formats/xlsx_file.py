@@ -69,7 +69,7 @@ def read(path: Path, max_bytes: int) -> Table:
     if not columns:
         raise InputError(Problem("file", "no rows", str(path), "export it again"))
     table = CellTable(path, columns, decimal_commas=True)
-    table.notes += tuple(notes)
+    table.notes, table.has_groups = table.notes + tuple(notes), several
     rates = {stated_rate(one) for one in above}
     table.stated_rate = rates.pop() if len(rates) == 1 else None
     table.unread_rate = "" if table.stated_rate else next(filter(None, map(unread_rate, above)), "")
