@@ -159,7 +159,8 @@ def _of_evidence(
         INPUT_NOISE if evidence.input_noise else "",
     )
     least = least_t(whole, state.nominal)
-    said = judged(found, [silent, short, *doubts, stretches.said], least)
+    unsure = short if found.t < least else ""
+    said = judged(found, [silent, unsure, *doubts, stretches.said], least)
     step(4, STEPS)
     return Explanation(report_fields.of_search(measurement, evidence, noise, said), evidence, noise, said.found)
 

@@ -49,7 +49,7 @@ def least_t(evidence: Evidence, nominal: Outcome) -> float:
     """The t over held-out records that confirms a cause, where these are too short for one of every size; else 0.
 
     It has the chance that `confirmed_t` has of many, by as many independent blocks as there are characteristic times
-    (Student 1908): 2.4 of seven, 4.5 of three. One time tells nothing.
+    (Student 1908): 2.5 of seven, 4.5 of three. One time tells nothing.
     """
     held = _times(evidence.holdout, _characteristic(evidence, nominal)[0])
     if held >= max(FEWEST_BLOCKS, FEWEST_PERIODS):
