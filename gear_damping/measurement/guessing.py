@@ -214,9 +214,9 @@ def _completed(named: list[tuple[Column, str | None, str]]) -> list[tuple[Column
     if not free:
         return named
     resting = [column for column in free if rests_between_jumps(column.inside)]
-    if len(resting) == 1 and len(free) == 2:
-        answer = next(column for column in free if column is not resting[0])
-        chosen = _driven(answer, resting[0], "force" in channels)
+    moving = [column for column in free if column not in resting]
+    if len(resting) == 1 and moving:
+        chosen = _driven(moving[0], resting[0], "force" in channels)
     else:
         chosen = {id(free[0]): ("displacement", "the slowest column; what it is, only you know")}
         lies_higher = len(free) == 2 and free[1].spectrum.centroid > _HIGHER * free[0].spectrum.centroid

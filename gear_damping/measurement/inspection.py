@@ -436,6 +436,8 @@ def _seen(
         return replace(column, kind=TIME, says=stamps.says)
     if column.kind in (UNREADABLE, ELSEWHERE):
         return column
+    if stamps is not None and np.array_equal(column.values, columns[stamps.index].values, equal_nan=True):
+        return replace(column, kind=TIME, says=f"the same as '{columns[stamps.index].reference}'")
     kind, says = kind_of(column.inside, str(column.reference), column.unit)
     if kind in (CONSTANT, EMPTY, ROW_NUMBER):
         return replace(column, kind=kind, says=says)

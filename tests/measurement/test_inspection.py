@@ -483,3 +483,17 @@ def test_numbers_few_values_and_those_that_fall_are_none(tmp_path, values):
     found, system, _ = guessed(read_table(tmp_path / "m1.npz"))
     assert column(found, "edges").kind != "times of pulses"
     assert system[0] == "oscillator"
+
+
+def test_of_several_answers_to_a_pulse_the_slowest_is_proposed_and_clocks_that_are_one_say_so(tmp_path):
+    """An oscilloscope writes a column of time for each of its channels; a pulse of 10 us was taken for the motion."""
+    time = np.arange(500) * 2e-6
+    ring = np.exp(-8000 * time) * np.sin(2 * np.pi * 14.7e3 * time)
+    pulse = np.where((time > 2e-5) & (time < 3e-5), 5.0, 0.0)
+    columns = {"TimeV_S": time, "AmplitudeV_S": pulse, "TimeV_C": time, "AmplitudeV_C": 3 * ring}
+    columns |= {"TimeV_R": time, "AmplitudeV_R": np.gradient(ring)}
+    np.savez(tmp_path / "ring.npz", **columns)
+    found, _, listed = guessed(read_table(tmp_path / "ring.npz"))
+    assert column(found, "TimeV_C").says == "the same as 'TimeV_S'"
+    used = {guess.channel: guess.column.reference for guess in listed if guess.used}
+    assert used == {"force": "AmplitudeV_S", "displacement": "AmplitudeV_C"}
