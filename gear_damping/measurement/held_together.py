@@ -111,10 +111,10 @@ def _torques(record: Record, known: Mapping[str, float]) -> Iterator[Finding]:
     if np.ptp(speeds) > _STEADY * abs(change) or abs(change) < _STEADY * abs(speeds[0]):
         return
     rpm = 30 / np.pi
-    message = (
-        f"{said}: they would change the pinion's speed by {change * rpm:.3g} rpm, and it hardly leaves "
-        f"{speeds[0] * rpm:.5g} rpm; {check}"
-    )
+    is_steady = np.ptp(speeds) <= _STEADY * abs(speeds[0])
+    ends = f"{speeds[0] * rpm:.5g} rpm", f"{speeds[-1] * rpm:.5g} rpm"
+    goes = f"it hardly leaves {ends[0]}" if is_steady else f"it goes from {ends[0]} to {ends[1]}"
+    message = f"{said}: they would change the pinion's speed by {change * rpm:.3g} rpm, and {goes}; {check}"
     yield Finding("torques_disagree", message, channel="gear_torque")
 
 

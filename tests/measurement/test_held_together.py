@@ -62,6 +62,20 @@ def test_torques_of_shafts_that_turn_evenly_balance(bench, pinion, gear, disagre
     assert ("torques_disagree" in bench.kinds()) is disagrees
 
 
+@pytest.mark.parametrize(("faster", "said"), [(1.0, "and it hardly leaves 1"), (4.0, "and it goes from 2")])
+def test_what_the_speed_does_beside_torques_of_the_wrong_shafts_is_told_as_it_is(bench, faster, said):
+    known = {"n_teeth_pinion": {"value": 20}, "n_teeth_gear": {"value": 40}, "module": {"value": 3, "unit": "mm"}}
+    known |= {f"inertia_{shaft}": {"value": 1e-4, "unit": "kg*m^2"} for shaft in ("pinion", "gear")}
+    bench.content["parameters"] = known
+    time = bench.columns["t"]
+    bench.columns["theta1"] = 60 * np.pi * (time + (faster - 1) * time**2 / 2 / time[-1])
+    del bench.channels["pinion_torque"], bench.channels["gear_torque"]
+    torques = {"pinion_torque": 150.0, "gear_torque": 75.0}
+    bench.record["conditions"] = {name: {"value": value, "unit": "N*m"} for name, value in torques.items()}
+    (found,) = [one for one in bench.load().findings if one.kind == "torques_disagree"]
+    assert said in found.message
+
+
 @pytest.mark.parametrize(("share", "disagrees"), [(1.0, False), (0.98, False), (0.5, True), (0.02, False)])
 def test_the_speed_of_the_gear_is_that_of_the_pinion_by_the_teeth(bench, share, disagrees):
     """A vibrometer at twice the radius shows half of it; one that lost its mean, next to nothing."""
