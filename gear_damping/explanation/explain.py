@@ -35,6 +35,7 @@ from gear_damping.explanation.steps.each_alone import of_each_record
 from gear_damping.explanation.steps.estimate import estimated
 from gear_damping.explanation.steps.never_dies import never_dies
 from gear_damping.explanation.steps.out_of_step import out_of_step
+from gear_damping.explanation.steps.overdamped import overdamped
 from gear_damping.explanation.steps.polarity import polarity_fault
 from gear_damping.explanation.steps.too_short import least_t, left_out_ends, too_short
 from gear_damping.explanation.trials.bench import Bench, Log, nobody
@@ -152,6 +153,7 @@ def _of_evidence(
     doubts = (
         out_of_step(found.state),
         never_dies(found.state),
+        overdamped(found.state),
         of_each_record(found.state),
         contradicts_stated(found.state.outcome, evidence),
         torque_of_the_other_shaft(found.state.outcome, evidence),
