@@ -24,6 +24,7 @@ _NUMBERED = {"sample", "frame", "index", "idx", "row", "seq", "sequence", "packe
 _NUMBER_OF = {"no", "nr", "num", "number", "id"}  # words behind these
 _WORDS = re.compile(r"[\W_]+|(?<=[a-z])(?=[A-Z])")  # what is between those of a name
 _FEWEST_EDGES = 16  # values that rise, of another number than the samples: fewer may be a list of settings
+_EVENLY = 1e-6  # of a step: as the rounding of an axis, and less than the pulses of any shaft differ
 _NEAR_TURN = 0.03  # of a turn: a ramp that ends so near to it wraps there
 
 
@@ -53,9 +54,11 @@ def kind_of(values: NDArray[np.float64], name: str, unit: str | None) -> tuple[s
 def may_be_edges(values: NDArray[np.float64]) -> bool:
     """Whether (n,) values, of which there are not as many as samples, rise at each, as the times of a shaft's pulses.
 
-    What goes on by 1 numbers something.
+    What goes on by one step is an axis, or numbers something.
     """
-    return values.size >= _FEWEST_EDGES and bool(np.all(np.diff(values) > 0)) and not counts_rows(values)
+    steps = np.diff(values)
+    rises_at_each = values.size >= _FEWEST_EDGES and bool(np.all(steps > 0))
+    return rises_at_each and bool(np.ptp(steps) > _EVENLY * np.median(steps))
 
 
 def counts_rows(values: NDArray[np.float64]) -> bool:

@@ -447,7 +447,8 @@ def _seen(
         return replace(column, kind=TIME, says="advances, and may be counted from 1970: another clock")
     if stamps is not None and (other := named_clock(column)):
         return replace(column, kind=TIME, says=f"{other.says}: another clock", stamps=other)
-    if column.values.size != length and column.unit in (None, *ENDINGS) and may_be_edges(column.inside):
+    is_alone = sum(other.values.size == column.values.size for other in columns) == 1  # of its length
+    if is_alone and column.values.size != length and column.unit in (None, *ENDINGS) and may_be_edges(column.inside):
         return replace(column, kind=EDGES, says="rise at each: perhaps the times at which a shaft's pulses begin")
     own = clock[1] if clock else None
     rate = base.sampling_rate if base is not None and column.values.size == length else own

@@ -161,9 +161,10 @@ def _gear(found: Inspection, listed: Sequence[Guess]) -> Iterator[str]:
     edges = [column for column in found.columns if column.kind == EDGES]
     if encoders or edges:
         yield "    encoders:"
-    for column in edges:
-        stated = {"timestamps": column.reference, "unit": column.unit or UNKNOWN, _COUNTS["pinion"]: UNKNOWN}
-        yield f"      pinion: {_mapping(stated)}   # guess: its values {column.says}; or gear, or tacho"
+    free = [name for name in _ENCODERS if name not in encoders]
+    for name, column in zip(free, edges, strict=False):
+        stated = {"timestamps": column.reference, "unit": column.unit or UNKNOWN, _COUNTS[name]: UNKNOWN}
+        yield f"      {name}: {_mapping(stated)}   # guess: its values {column.says}; or {' or '.join(_others(name))}"
     if "gear" in used and "pinion" not in used:
         yield f"      pinion: {_mapping({'column': UNKNOWN, 'counts_per_revolution': UNKNOWN})}   # beside the gear's"
     for name in encoders:
@@ -181,6 +182,10 @@ def _gear(found: Inspection, listed: Sequence[Guess]) -> Iterator[str]:
         yield "    conditions:"
     for name, unit in missing.items():
         yield f"      {name}: {_mapping({'value': UNKNOWN, 'unit': unit})}   # no column looks like it"
+
+
+def _others(name: str) -> list[str]:
+    return [one for one in _ENCODERS if one != name]
 
 
 def _left_out(found: Inspection, listed: Sequence[Guess]) -> Iterator[str]:

@@ -477,8 +477,27 @@ def test_values_that_rise_and_are_of_another_number_may_be_the_times_of_pulses(t
     assert "not declared: column edges" not in text
 
 
-@pytest.mark.parametrize("values", [np.arange(300.0), np.arange(8.0) ** 2, np.sin(np.arange(300.0))])
-def test_numbers_few_values_and_those_that_fall_are_none(tmp_path, values):
+def test_times_of_pulses_of_both_shafts_have_a_key_each(tmp_path):
+    drawn = np.random.default_rng(1).uniform(0, 1, 500)
+    arrays = {"speed": np.sin(0.3 * np.arange(1200)), "e1": np.cumsum(40 + drawn), "e2": np.cumsum(90 + drawn[:200])}
+    np.savez(tmp_path / "m1.npz", **arrays)
+    text = starting_yaml(*guessed(read_table(tmp_path / "m1.npz")))
+    assert "pinion: {timestamps: e1," in text
+    assert "gear: {timestamps: e2," in text
+
+
+def test_a_spectrum_beside_the_samples_is_no_shaft(tmp_path):
+    uneven = np.cumsum(1 + np.random.default_rng(1).uniform(0, 1, 400))
+    np.savez(tmp_path / "m1.npz", x=np.sin(0.3 * np.arange(1200)), f=uneven, power=np.exp(-uneven))
+    found, system, _ = guessed(read_table(tmp_path / "m1.npz"))
+    assert column(found, "f").kind != "times of pulses"
+    assert system[0] == "oscillator"
+
+
+@pytest.mark.parametrize(
+    "values", [np.arange(300.0), np.arange(8.0) ** 2, np.sin(np.arange(300.0)), 0.5 * np.arange(300.0)]
+)
+def test_numbers_axes_few_values_and_those_that_fall_are_none(tmp_path, values):
     np.savez(tmp_path / "m1.npz", speed=np.sin(0.3 * np.arange(1200)), edges=values)
     found, system, _ = guessed(read_table(tmp_path / "m1.npz"))
     assert column(found, "edges").kind != "times of pulses"
