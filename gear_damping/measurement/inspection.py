@@ -447,14 +447,18 @@ def _seen(
         return replace(column, kind=TIME, says="advances, and may be counted from 1970: another clock")
     if stamps is not None and (other := named_clock(column)):
         return replace(column, kind=TIME, says=f"{other.says}: another clock", stamps=other)
-    is_alone = sum(other.values.size == column.values.size for other in columns) == 1  # of its length
-    if is_alone and column.values.size != length and column.unit in (None, *ENDINGS) and may_be_edges(column.inside):
+    if column.values.size != length and _is_alone(column, columns) and may_be_edges(column.inside):
         return replace(column, kind=EDGES, says="rise at each: perhaps the times at which a shaft's pulses begin")
     own = clock[1] if clock else None
     rate = base.sampling_rate if base is not None and column.values.size == length else own
     seen = replace(column, kind=kind, says=says, rate=rate)
     whole = _whole(seen)
     return replace(seen, step=_step_of(whole), spectrum=spectrum_of(whole, rate or 1.0))
+
+
+def _is_alone(column: Column, columns: Sequence[Column]) -> bool:
+    """Whether no other column has its length, and its unit is one of stamps, if it has any."""
+    return column.unit in (None, *ENDINGS) and sum(one.values.size == column.values.size for one in columns) == 1
 
 
 def _counts_time(column: Column, clock: Column, stamps: Stamps) -> str | None:

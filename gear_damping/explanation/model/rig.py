@@ -109,14 +109,13 @@ def strongest_frequencies(residuals: Residuals, natural: float) -> tuple[float, 
     lowest = max(FEWEST_CYCLES * record.sampling_rate / len(record.response) for record, _ in residuals)
     if lowest * BAND >= highest:
         return ()
-    edges = lowest * BAND ** torch.arange(floor(log(highest / lowest) / log(BAND)) + 1, dtype=torch.float64)
+    edges = _edges(lowest, highest)
     middles = edges[:-1] * sqrt(BAND)
     energy, motion = torch.zeros(2, len(middles), dtype=torch.float64)
     for record, left in residuals:
         for total, series in ((energy, left[: len(record.response)]), (motion, record.response)):
             power, frequency = _power(series * record.weight, record.sampling_rate)
-            inside = (frequency >= edges[0]) & (frequency < edges[-1])
-            total.index_add_(0, torch.bucketize(frequency[inside], edges, right=True) - 1, power[inside])
+            total += _in_bands(power, frequency, edges)
     energy = torch.where(_stands_out(energy), energy, 0.0)
     multiples = (middles / natural).round().clamp(min=1)
     near = (middles / natural / multiples).log().abs() < torch.where(multiples > 1, log(BAND) * 2, log(OWN))
@@ -151,7 +150,7 @@ def ringing_frequencies(residuals: Residuals, pinion: int, gear: int, values: Ma
     lowest = max((FEWEST_CYCLES * r.sampling_rate / len(r.response) for r, _ in residuals), default=highest)
     if lowest * BAND >= highest:
         return ()
-    edges = lowest * BAND ** torch.arange(floor(log(highest / lowest) / log(BAND)) + 1, dtype=torch.float64)
+    edges = _edges(lowest, highest)
     energy, whole = torch.zeros(len(edges) - 1, dtype=torch.float64), 0.0
     for record, left in residuals:
         angle = shaft_angle(record, values["pinion_speed"])[: len(record.response)]
@@ -163,10 +162,21 @@ def ringing_frequencies(residuals: Residuals, pinion: int, gear: int, values: Ma
         for order in [*orders, *(k * pinion for k in range(1, HARMONICS + 1))]:
             power[(frequency > order * slowest - width) & (frequency < order * fastest + width)] = 0
         whole += float(power.sum())
-        inside = (frequency >= edges[0]) & (frequency < edges[-1])
-        energy.index_add_(0, torch.bucketize(frequency[inside], edges, right=True) - 1, power[inside])
+        energy += _in_bands(power, frequency, edges)
     best = int(torch.where(_stands_out(energy), energy, 0.0).argmax())
     return (float(edges[best]) * sqrt(BAND),) if float(energy[best]) > WORTH * whole else ()
+
+
+def _edges(lowest: float, highest: float) -> Tensor:
+    """Frequencies between which the energy of a spectrum is counted, each a little above the one before."""
+    return lowest * BAND ** torch.arange(floor(log(highest / lowest) / log(BAND)) + 1, dtype=torch.float64)
+
+
+def _in_bands(power: Tensor, frequency: Tensor, edges: Tensor) -> Tensor:
+    """The power (lines,) between each two edges, (edges - 1,)."""
+    inside = (frequency >= edges[0]) & (frequency < edges[-1])
+    total = torch.zeros(len(edges) - 1, dtype=torch.float64)
+    return total.index_add_(0, torch.bucketize(frequency[inside], edges, right=True) - 1, power[inside])
 
 
 def _power(series: Tensor, rate: float) -> tuple[Tensor, Tensor]:
