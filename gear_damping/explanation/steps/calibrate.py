@@ -16,6 +16,7 @@ from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.followed import followed_alone, of_one_flank
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.mesh_alignment import begun_aligned
+from gear_damping.explanation.model.near_stated import is_overdamped, near_stated
 from gear_damping.explanation.model.nominal_gear_pair import (
     ANGLES_KEPT,
     ROUGH_ITERATIONS,
@@ -115,6 +116,18 @@ def _oscillator_calibrated(evidence: Evidence, solver: Solver | None) -> Calibra
 
 
 def _gear_pair_calibrated(evidence: Evidence, solver: Solver | None) -> Calibration:
+    """The gear pair, held near what is stated of its mesh where that comes out damped beyond critical otherwise."""
+    found = _under_quiet_torques(evidence, solver)
+    near = near_stated(evidence) if is_overdamped(found.nominal, evidence) else None
+    if near is None:
+        return found
+    held = _under_quiet_torques(near, solver)
+    if not held.nominal.is_finite or is_overdamped(held.nominal, evidence):
+        return found
+    return replace(held, evidence=replace(held.evidence, known=evidence.known))  # it is not what the file says
+
+
+def _under_quiet_torques(evidence: Evidence, solver: Solver | None) -> Calibration:
     """The same with torques: all of a floor may be that of the meter, as a steady torque has no content of its own."""
     found = _gear_pair(evidence, solver)
     cleaned = None if found.followed or is_standing(evidence) else _with_quiet_loads(found.evidence)

@@ -1,36 +1,29 @@
 """A mesh that came out damped beyond critical: the fit has gone to where nothing swings."""
 
-from math import pi
-
-from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
+from gear_damping.explanation.model.near_stated import (
+    WITHIN,
+    is_held_near_stated,
+    is_overdamped,
+    mesh_damping_ratio,
+)
 from gear_damping.explanation.state import State
-from gear_damping.identification.oscillator.linear_model import DAMPING
-from gear_damping.physics.systems.traits import Trait
 
-CRITICAL = 1.0  # no mesh comes near it: lubricated steel has a hundredth to a tenth
+STIFFNESS, RATIO = (f"{100 * WITHIN[name]:.0f} %" for name in ("mesh_stiffness_max", "damping_ratio"))
+HELD = (
+    "Fitted freely, the mesh came out damped beyond critical, which none is: its stiffness was held near what is "
+    f"stated, with a standard deviation of {STIFFNESS}, and its damping ratio with one of {RATIO}. State both with an "
+    "`uncertainty` of your own if you know better."
+)
 
 
 def overdamped(state: State) -> str:
-    """A sentence where the viscous damping of a mesh is beyond critical, else nothing.
-
-    Where most of what the records hold is not in the model, and slow, a stiff and dead one follows them best: what is
-    stated without an uncertainty is where the fit begins, and does not hold it.
-    """
-    if not state.bench.evidence.has(Trait.TEETH):
-        return ""
-    ratio = _damping_ratio(state.outcome)
-    if ratio <= CRITICAL:
-        return ""
-    return (
-        f"A damping of {100 * ratio:.3g} % of critical is none of a mesh: the fit has gone to where nothing swings, "
-        "and what it says of stiffness and damping is not to be used. State mesh_stiffness_max, mesh_stiffness_min and "
-        "damping_ratio with an `uncertainty` (10 %, and 50 %), which holds it near them, and ask again."
-    )
-
-
-def _damping_ratio(outcome: Outcome) -> float:
-    """Of the small motion of the model, by its viscous law."""
-    given, model = outcome.flat_given(), outcome.hypothesis.model
-    frequency = natural_frequency_hz(model, given)
-    mass = float(model.prepare(model.values(1, **given)).derived["equivalent_mass"][0])
-    return float(given.get(DAMPING, 0.0)) / mass / (4 * pi * frequency) if frequency > 0 else 0.0
+    """A sentence where a mesh was held near what is stated for that, or is beyond critical all the same."""
+    evidence = state.bench.evidence
+    if is_overdamped(state.outcome, evidence):
+        return (
+            f"A damping of {100 * mesh_damping_ratio(state.outcome):.3g} % of critical is none of a mesh: the fit has "
+            "gone to where nothing swings, and what it says of stiffness and damping is not to be used. State "
+            f"mesh_stiffness_max, mesh_stiffness_min and damping_ratio with an `uncertainty` ({STIFFNESS}, and "
+            f"{RATIO}), which holds it near them, and ask again."
+        )
+    return HELD if is_held_near_stated(state.nominal, evidence) else ""
