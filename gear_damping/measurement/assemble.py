@@ -96,7 +96,7 @@ class Assembler:
         factor = conversion.factor
         if record.table.full_scale is not None:
             factor = self._of_full_scale(plan, limits, factor)
-            notes.append(f"{plan.name}: full scale is taken as {factor / plan.sensor['gain']:.6g} {conversion.unit}")
+            notes.append(_full_scale(plan, factor / plan.sensor["gain"], conversion, raw.unit))
         values = raw.values * (factor * plan.sensor["polarity"] / plan.sensor["gain"])
         turn = turn_in(conversion.unit)
         is_turned = plan.name == "pinion_angle" or (bool(turn) and begins_again(values, turn))
@@ -203,7 +203,9 @@ class Assembler:
         radii = base_radius(teeth_1, module, pressure), base_radius(teeth_2, module, pressure)
         values = transmission_error(angles["pinion"], angles["gear"], *radii)
         found = tooth_ratio(angles["pinion"], angles["gear"], (teeth_1, teeth_2), radii[0])
-        findings += [replace(found, channel="transmission_error")] if found else []
+        if found:  # one of them is wrong: what is made of both would be nobody's rotation
+            findings.append(replace(found, channel="transmission_error"))
+            return values, angles["pinion"]
         known = [self.plan.parameters[name].value for name in _INERTIAS if name in self.plan.parameters]
         if len(known) < len(_INERTIAS):
             return values, angles["pinion"]
@@ -324,6 +326,17 @@ def _beside_condition(channel: Channel, stated: Quantity) -> Finding:
     message += f", which it never reaches ({reached}); correct the one that is wrong"
     severity = "data_problem" if channel.name in SHAFT_SPEEDS else "note"  # a torque meter may be off by as much
     return Finding("condition_mismatch", message, channel=channel.name, severity=severity)
+
+
+def _full_scale(plan: ChannelPlan, factor: float, conversion: Conversion, unit: str) -> str:
+    """What is said of the full scale of a WAV file: that it is a guess where neither a range nor a gain stands."""
+    if "range" in plan.limits or plan.sensor["gain"] != plan.lever:
+        return f"{plan.name}: full scale is taken as {factor:.6g} {conversion.unit}"
+    one = factor / conversion.factor
+    return (
+        f"{plan.name}: no range is stated, and full scale is taken as {one:.6g} {unit}, a guess: write "
+        f"`range: 50 {unit}` with what the sensor gives at full scale, or the figures count in shares of it"
+    )
 
 
 def _folded_back(name: str, shaft: ShaftAngle, base: TimeBase) -> list[str]:

@@ -156,9 +156,12 @@ def check_record(record: Record) -> tuple[Finding, ...]:
         found += check_channel(channel, strokes)
     if not any(finding.severity == "data_problem" and finding.channel == "time" for finding in record.findings):
         found.append(stamps_against_values(record))
-    found += [check(channel) for channel in record.channels.values() for check in (_drowned, _straight)]
+    disagree = any(finding.kind == "tooth_ratio" for finding in record.findings)
+    straight = [] if disagree else [_straight(channel) for channel in record.channels.values()]  # nor a lag, nor a pace
+    found += [*map(_drowned, record.channels.values()), *straight]
     found += [lost_samples(channel, record.time) for channel in record.channels.values()]
-    found += [_magnitude(record), _rests_elsewhere(record), _oversampled(record)]
+    found += [_magnitude(record), _rests_elsewhere(record)]
+    found += [] if disagree or any(straight) else [_oversampled(record)]
     found += [*check_shafts(record), *not_compared(record)]
     found += [*_beyond_the_band(record), *_inputs_beyond(record)]
     return tuple(replace(finding, record=record.name) for finding in found if finding)

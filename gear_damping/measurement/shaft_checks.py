@@ -48,7 +48,8 @@ def tooth_ratio(
     said = f"{teeth[1]:g}/{teeth[0]:g} = {declared:.6g}"
     message = f"the two encoders turn at a ratio of {measured:.6g}, and the teeth say {said}"
     if abs(measured + declared) <= tolerance:
-        return Finding("tooth_ratio", f"{message}; one direction is wrong: give it direction: -1")
+        remedy = "write direction: -1 beside one of them, or take it out where it stands"
+        return Finding("tooth_ratio", f"{message}; one of the two directions is wrong: {remedy}")
     if abs(measured - 1 / declared) <= tolerance:
         return Finding("tooth_ratio", f"{message}; the encoders of pinion and gear, or the tooth counts, are exchanged")
     near = _nearest_teeth(abs(measured), tolerance, teeth)

@@ -267,9 +267,12 @@ def _measurement_lines(measurement: Measurement) -> Iterator[str]:
         if named:
             yield f"  {word}: {', '.join(named)}"
     free = [record.name for record in measurement.with_role(None)]
+    casings = all(_is_casing_alone(record) for record in measurement.records)
     if free:
-        held_out = _CASINGS if all(_is_casing_alone(record) for record in measurement.records) else _AUTOMATIC
+        held_out = _CASINGS if casings else _AUTOMATIC
         yield f"  role not said: {', '.join(free)}" + ("" if len(free) < len(measurement.records) else held_out)
+    if not free and measurement.with_role("fit") and not measurement.with_role("holdout") and not casings:
+        yield "  none is held out: task=explain holds out a part of each by itself"
     if not free and not measurement.with_role("fit"):
         yield "  none is fitted: task=identify and task=explain need a record of role: fit"
     if measurement.segment_s:

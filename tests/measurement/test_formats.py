@@ -309,6 +309,19 @@ def test_an_angle_of_a_shaft_is_scaled_by_what_full_scale_is_said_to_be(bench, s
     assert any(f"full scale is taken as {1e-3 * radius:.6g} m" in note for note in loaded.notes)
 
 
+def test_without_a_range_the_full_scale_of_a_wav_file_is_said_to_be_a_guess(bench):
+    samples = (3000 * np.sin(np.arange(2000) / 9)).astype(np.int16)
+    wavfile.write(bench.folder / "a.wav", 12800, samples)
+    channel = {"column": 0, "unit": "g"}
+    record = {"file": "a.wav", "channels": {"acceleration": channel}}
+    record["conditions"] = {"pinion_speed": {"value": 1800, "unit": "rpm"}}
+    bench.content["records"] = [record]
+    said = "acceleration: no range is stated, and full scale is taken as 1 g, a guess: write `range: 50 g`"
+    assert any(note.startswith(said) for note in bench.load_as_it_is().records[0].notes)
+    channel["range"] = "50 g"
+    assert not any("a guess" in note for note in bench.load_as_it_is().records[0].notes)
+
+
 def test_settings_above_a_table_without_a_header_are_left_out(tmp_path):
     path = tmp_path / "swing.lvm"
     values = -90 + np.arange(50) / 8

@@ -56,6 +56,16 @@ def test_two_encoders_on_the_declared_teeth_raise_nothing(bench, turned):
     assert _problems(_two_encoders(bench, turned[:200], turned[:200] / 2)) == []  # a third of a turn
 
 
+@pytest.mark.parametrize("ratio", [-2.0, 1.9375], ids=["a direction", "a count"])
+def test_encoders_that_contradict_each_other_tell_no_mean_rotation(bench, turned, ratio):
+    """What both together would make is no rotation of anything, nor is the way that they part a straight response."""
+    bench.content["parameters"] |= {"inertia_pinion": "1e-3 kg*m^2", "inertia_gear": "4e-3 kg*m^2"}
+    record = _two_encoders(bench, turned, turned / ratio)
+    turns = float(np.ptp(record.channels["pinion_angle"].values))
+    assert turns == pytest.approx(188.5, rel=1e-3)
+    assert {finding.kind for finding in record.findings} == {"tooth_ratio"}
+
+
 def test_an_encoder_that_counts_backwards_and_exchanged_ones_are_said_so(bench, turned):
     assert "direction: -1" in _two_encoders(bench, turned, -turned / 2).findings[0].message
     assert "exchanged" in _two_encoders(bench, turned / 2, turned).findings[0].message

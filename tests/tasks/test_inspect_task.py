@@ -328,6 +328,20 @@ def test_what_the_steps_of_two_encoders_divide_by_is_told_as_no_step(tmp_path):
     assert "n_teeth_pinion: 20\n" in (tmp_path / "out" / "inspection.txt").read_text()
 
 
+@pytest.mark.parametrize(("roles", "is_said"), [(["fit", "fit"], True), (["fit", "holdout"], False)])
+def test_that_a_part_of_each_is_held_out_is_said_where_none_is(tmp_path, roles, is_said):
+    random, channels, records = np.random.default_rng(1), {"displacement": {"column": "x", "unit": "mm"}}, []
+    for number, role in enumerate(roles):
+        noisy = np.exp(-3 * TIME) * np.cos(200 * TIME) + random.normal(0, 1e-3, TIME.size)
+        np.savetxt(tmp_path / f"{number}.csv", noisy, header="x", comments="", fmt="%.6g")
+        records.append({"role": role, "file": f"{number}.csv", "sampling_rate": f"{RATE} Hz", "channels": channels})
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump({"system": "oscillator", "records": records}))
+    code, _ = inspected(tmp_path / "measurement.yaml", tmp_path / "out")
+    assert code == 0
+    text = (tmp_path / "out" / "inspection.txt").read_text()
+    assert ("none is held out: task=explain holds out a part of each by itself" in text) == is_said
+
+
 def test_of_a_casing_no_holding_out_is_promised(tmp_path):
     columns = np.column_stack([np.random.default_rng(1).normal(size=TIME.size), np.mod(12 * TIME, 1) < 0.3])
     np.savetxt(tmp_path / "run.csv", columns, delimiter=",", header="a,tacho", comments="", fmt="%.6g")
