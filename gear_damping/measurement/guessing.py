@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError
+from gear_damping.measurement.column import Column
 from gear_damping.measurement.column_kinds import (
     COUNTER,
     EDGES,
@@ -20,7 +21,7 @@ from gear_damping.measurement.column_kinds import (
 )
 from gear_damping.measurement.files import UNKNOWN
 from gear_damping.measurement.formats.table import Table
-from gear_damping.measurement.inspection import Column, Inspection, clock_of, inspect_table, of_columns
+from gear_damping.measurement.inspection import Inspection, clock_of, inspect_table, of_columns
 from gear_damping.measurement.named_units import NAMED_UNITS, unit_of_name
 from gear_damping.measurement.staircase import is_staircase, rests_between_jumps
 from gear_damping.measurement.vocabulary import INPUTS

@@ -10,96 +10,42 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.by_turns import seen_by_turns
+from gear_damping.measurement.column import Column, column_of, longest_finite, of_one_group, seen_as, whole_of
 from gear_damping.measurement.column_kinds import (
     CONSTANT,
-    EDGES,
     ELSEWHERE,
     EMPTY,
     ROW_NUMBER,
-    SIGNAL,
     TIME,
-    TURNING,
     UNREADABLE,
     counts_rows,
-    kind_of,
-    may_be_edges,
-    turn_of,
 )
 from gear_damping.measurement.formats.blocks import listed, overlapping
 from gear_damping.measurement.formats.table import ArrayTable, Table
 from gear_damping.measurement.irregular_stamps import HALF
-from gear_damping.measurement.recordings import past_overflow, recordings
-from gear_damping.measurement.resolution import step_of
+from gear_damping.measurement.recordings import recordings
 from gear_damping.measurement.rows import LEAST_SAMPLES, filled_in, last_number
-from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
+from gear_damping.measurement.spectral_floor import spectrum_of
 from gear_damping.measurement.time_column import (
     ENDINGS,
     Stamps,
-    counts_from_1970,
     find_stamps,
-    named_clock,
     runs_through,
     stamped_rate,
     unit_by_name,
 )
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
-from gear_damping.units import to_si
 
 _SPARSE = 0.5  # of the longest stretch of values of any column: one with a shorter one is filled here and there
 _FREQUENCIES = ("Hz", "kHz")  # units of the axis of a spectrum; rad/s are as well those of a shaft that runs up
 _ORDERS = re.compile(r"\s*(orders?|ordnung|ordre)\s*([(\[].*)?$", re.I)  # the name of the same axis by turns of a shaft
 _AXIS = 0.1  # of a step, within which the lines of a spectrum stand apart, as they were rounded
-_EVEN = 1e-6  # of an advance from sample to sample: differences below it are rounding
-_ANY_SIGNAL = re.compile(r"^(values?|data|signal|[xyzt]|time\w*)$", re.I)  # a name that tells no record from a channel
 _LYING = 20  # columns for each row of a table that lies on its side: no recorder has so many channels of so few samples
 MOST_BETWEEN = 20  # blank cells between two values of a slower channel; what has more is no motion beside the others
 MOST_LISTED = 6  # recordings of a file that a line lists
 _OTHER_PACE = 0.01  # of the mean step, by which the steps of two clocks may differ: jitter, and they are one
-_CERAMIC = 0.01  # by which the clock of a small board may be fast or slow: its resonator is good to half of that
 _RATE = re.compile(r"samp\w*[ _]?(freq|rate)|^(fs|f_s|sr|s_?rate)$|abtastrate", re.I)  # of a single number
 SHORTEST = 1e-15  # s between two samples: below it lie damaged stamps, and no sensor
-
-
-@dataclass(frozen=True, eq=False)
-class Column:
-    """A column of a file and what it looks like.
-
-    Args:
-        reference: What a measurement.yaml calls it: its name, or its index where it has none of its own.
-        values: (n,) all of it.
-        finite: (first, stop) of its longest stretch of finite values.
-        unit: The unit that the file gives, or None.
-        kind: One of those of `column_kinds`.
-        says: What that was seen by, for people.
-        step: The quantisation step, 0.0 where none was seen.
-        spectrum: Of a signal with a constant rate; in cycles a sample where no rate is known.
-        rate: Its own samples a second, or None.
-        stamps: What it is as the time stamps of columns beside it; None of all but further clocks.
-    """
-
-    reference: str | int
-    values: NDArray[np.float64]
-    finite: tuple[int, int]
-    unit: str | None
-    kind: str = SIGNAL
-    says: str = ""
-    step: float = 0.0
-    spectrum: Spectrum | None = None
-    rate: float | None = None
-    stamps: Stamps | None = None
-
-    @property
-    def inside(self) -> NDArray[np.float64]:
-        """The longest stretch of finite values."""
-        return self.values[self.finite[0] : self.finite[1]]
-
-    @property
-    def deviation(self) -> float:
-        """The standard deviation about the line through the values."""
-        values = self.inside
-        place = np.linspace(-1.0, 1.0, values.size)
-        centred = values - values.mean() if values.size else values
-        return float(np.std(centred - place * (centred @ place) / (place @ place))) if values.size > 1 else 0.0
 
 
 _NOTHING = Column("", np.empty(0), (0, 0), None)
@@ -156,8 +102,8 @@ def inspect_table(table: Table, clock: str | int | None = None) -> Inspection:
         InputError: none of them holds numbers, they lie in rows, or they are a spectrum.
     """
     _refuse_lying(table)
-    columns = [_column(table, index) for index in range(len(table.names))]
-    columns = _of_one_group(columns) if table.has_groups else columns
+    columns = [column_of(table, index) for index in range(len(table.names))]
+    columns = of_one_group(columns) if table.has_groups else columns
     if not any(column.values.size for column in columns):
         rule = f"no column holds numbers; the first: {columns[0].says}"
         raise InputError(Problem("file", rule, str(table.path), "export the channels as numbers"))
@@ -179,7 +125,7 @@ def inspect_table(table: Table, clock: str | int | None = None) -> Inspection:
     )
     unread = (named or table.unread_rate) if base is None and not rate else ""
     base = steady_time(rate, rows[0], rows[1] - rows[0]) if rate else base
-    found = [_seen(c, stamps, columns, base, length, table.clock(k)) for k, c in enumerate(columns)]
+    found = [seen_as(c, stamps, columns, base, length, table.clock(k)) for k, c in enumerate(columns)]
     rate_of = named if rate else ""
     seen = Inspection(table, tuple(found), length, stamps, base, rows, faults, rate_of, taken or some, unread)
     return replace(seen, columns=tuple(_by_own_clock(seen, column) for column in found))
@@ -208,7 +154,7 @@ def _by_own_clock(found: Inspection, column: Column) -> Column:
     """The column with its rate and its spectrum, where it has a clock of its own."""
     clock = clock_of(found, column) if column.spectrum is not None else None
     rate = None if clock is None else stamped_rate(clock.stamps.unit, clock.inside)
-    return replace(column, rate=rate, spectrum=spectrum_of(_whole(column), rate)) if rate else column
+    return replace(column, rate=rate, spectrum=spectrum_of(whole_of(column), rate)) if rate else column
 
 
 def _refuse_lying(table: Table) -> None:
@@ -255,7 +201,9 @@ def _where_filled(columns: list[Column]) -> tuple[list[Column], str]:
     if every[2] > MOST_BETWEEN:
         return columns, ""
     kept = [column.values[slice(*every)] for column in columns]
-    some = [replace(one, values=values, finite=_finite(values)) for one, values in zip(columns, kept, strict=True)]
+    some = [
+        replace(one, values=values, finite=longest_finite(values)) for one, values in zip(columns, kept, strict=True)
+    ]
     return some, f"one row in {every[2]}, those in which slower columns have values"
 
 
@@ -320,42 +268,6 @@ def _may_be_rate(columns: Sequence[Column]) -> tuple[str, float] | None:
     return None
 
 
-def _column(table: Table, index: int) -> Column:
-    name = table.names[index]
-    reference = name if name and table.names.count(name) == 1 else index
-    try:
-        values = table.values(index)
-    except InputError as error:
-        return Column(reference, np.empty(0), (0, 0), None, UNREADABLE, error.problems[0].rule)
-    return Column(reference, values, _finite(values), table.unit(index))
-
-
-def _of_one_group(columns: list[Column]) -> list[Column]:
-    """The columns, of groups with members of the same names (`run1/acc`, `run2/acc`) those of the first alone."""
-    groups: dict[str, list[str]] = {}
-    for column in columns:
-        group, stroke, member = str(column.reference).rpartition("/")
-        if stroke and not isinstance(column.reference, int):
-            groups.setdefault(group, []).append(member)
-    first = next(iter(groups), "")
-    own = {member for member in groups.get(first, ()) if not _ANY_SIGNAL.search(member)}
-    others = [group for group in groups if group != first and own & {*groups[group]}]
-    if not others or sum(map(len, groups.values())) < len(columns):
-        return columns
-    nothing = {"values": np.empty(0), "finite": (0, 0), "kind": ELSEWHERE, "says": f"as that of '{first}'"}
-    return [replace(c, **nothing) if str(c.reference).rpartition("/")[0] in others else c for c in columns]
-
-
-def _finite(values: NDArray[np.float64]) -> tuple[int, int]:
-    """First row and end of the longest stretch of finite values."""
-    edges = np.flatnonzero(np.diff(np.r_[False, np.isfinite(values), False]))
-    starts, stops = edges[::2], edges[1::2]
-    if not starts.size:
-        return 0, 0
-    longest = int(np.argmax(stops - starts))
-    return int(starts[longest]), int(stops[longest])
-
-
 def _length(columns: Sequence[Column], stamps: Stamps | None) -> int:
     """The length that most columns have, the stamps' where several are as frequent, else the longest."""
     sizes = Counter(c.values.size for c in columns)
@@ -371,7 +283,7 @@ def _rows(columns: Sequence[Column]) -> tuple[int, int]:
     stretches = [c.finite[1] - c.finite[0] for c in columns]
     least = max(1.0, _SPARSE * max(stretches, default=0))
     held = [np.isfinite(c.values) for c, stretch in zip(columns, stretches, strict=True) if stretch >= least]
-    return _finite(np.where(np.logical_and.reduce(held), 0.0, np.nan)) if held else (0, 0)
+    return longest_finite(np.where(np.logical_and.reduce(held), 0.0, np.nan)) if held else (0, 0)
 
 
 def _of_one_recording(
@@ -422,67 +334,3 @@ def _usual_step(steps: NDArray[np.float64]) -> float:
     median = float(np.median(steps))
     usual = steps[np.abs(steps - median) <= HALF * abs(median)]
     return abs(float(usual.mean() if median and usual.size else steps.mean()))
-
-
-def _seen(
-    column: Column,
-    stamps: Stamps | None,
-    columns: Sequence[Column],
-    base: TimeBase | None,
-    length: int,
-    clock: tuple[float, float] | None,
-) -> Column:
-    if stamps is not None and column is columns[stamps.index]:
-        return replace(column, kind=TIME, says=stamps.says)
-    if column.kind in (UNREADABLE, ELSEWHERE):
-        return column
-    if stamps is not None and np.array_equal(column.values, columns[stamps.index].values, equal_nan=True):
-        return replace(column, kind=TIME, says=f"the same as '{columns[stamps.index].reference}'")
-    kind, says = kind_of(column.inside, str(column.reference), column.unit)
-    if kind in (CONSTANT, EMPTY, ROW_NUMBER):
-        return replace(column, kind=kind, says=says)
-    if stamps is not None and (unit := _counts_time(column, columns[stamps.index], stamps)):
-        return replace(column, kind=TIME, says=f"goes on with the time stamps, in {unit}: another clock")
-    if stamps is not None and counts_from_1970(column.inside):
-        return replace(column, kind=TIME, says="advances, and may be counted from 1970: another clock")
-    if stamps is not None and (other := named_clock(column)):
-        return replace(column, kind=TIME, says=f"{other.says}: another clock", stamps=other)
-    if column.values.size != length and _is_alone(column, columns) and may_be_edges(column.inside):
-        return replace(column, kind=EDGES, says="rise at each: perhaps the times at which a shaft's pulses begin")
-    own = clock[1] if clock else None
-    rate = base.sampling_rate if base is not None and column.values.size == length else own
-    seen = replace(column, kind=kind, says=says, rate=rate)
-    whole = _whole(seen)
-    return replace(seen, step=_step_of(whole), spectrum=spectrum_of(whole, rate or 1.0))
-
-
-def _is_alone(column: Column, columns: Sequence[Column]) -> bool:
-    """Whether no other column has its length, and its unit is one of stamps, if it has any."""
-    return column.unit in (None, *ENDINGS) and sum(one.values.size == column.values.size for one in columns) == 1
-
-
-def _counts_time(column: Column, clock: Column, stamps: Stamps) -> str | None:
-    """The unit in which whole numbers without a name go on as stamps beside them do, as `micros()`; None of others."""
-    values = past_overflow(column.inside)
-    if isinstance(column.reference, str) or column.finite != clock.finite or values.size < LEAST_SAMPLES:
-        return None
-    if np.any(values != np.round(values)) or np.any(np.diff(values) < 0):
-        return None
-    lasts = np.ptp(clock.inside) * stamps.in_seconds
-    return next(
-        (unit for unit in ENDINGS[1:] if abs(np.ptp(values) * to_si(1, unit, "s") / lasts - 1) < _CERAMIC), None
-    )
-
-
-def _whole(column: Column) -> NDArray[np.float64]:
-    """The longest stretch of a column, of an angle that falls back once a turn unwrapped."""
-    turn = turn_of(column.inside) if column.kind == TURNING else None
-    return column.inside if turn is None else np.unwrap(column.inside, period=turn)
-
-
-def _step_of(values: NDArray[np.float64]) -> float:
-    """The quantisation step; of values that go on with every sample that of their advance, which is their speed."""
-    advance = np.diff(values)
-    is_ramp = advance.size and np.ptp(advance) <= _EVEN * np.abs(advance).max()
-    goes_on = advance.size and (advance.min() > 0 or advance.max() < 0)
-    return 0.0 if is_ramp else step_of(advance if goes_on else values)

@@ -14,13 +14,14 @@ from numpy.typing import NDArray
 from gear_damping.config.light import InspectSettings
 from gear_damping.config.measured import YAML_SUFFIXES
 from gear_damping.config.shown import shown
+from gear_damping.measurement.column import Column
 from gear_damping.measurement.column_kinds import CONSTANT, ELSEWHERE
 from gear_damping.measurement.encoders import FROM_ENCODERS
 from gear_damping.measurement.files import UNKNOWN
 from gear_damping.measurement.foretold import natural_frequency, of_record
 from gear_damping.measurement.formats.registry import read_table, readers
 from gear_damping.measurement.guessing import Guess, guessed
-from gear_damping.measurement.inspection import Column, Inspection, clock_of
+from gear_damping.measurement.inspection import Inspection, clock_of
 from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.measurement.record_checks import MESH_RESPONSES
