@@ -25,7 +25,7 @@ def outcome_of(deviation, noise, seed=3):
     free = [SimpleNamespace(name=name) for name in names]
     slope = torch.tensor([0.0, 0.0, 0.0, noise / deviation], dtype=torch.float64)
     problem = SimpleNamespace(
-        free=free, n_shared=4, expectation=lambda *_: (0 * slope, slope), level=lambda _: torch.tensor(noise**2)
+        free=free, n_shared=4, expectation=lambda *_: (0 * slope, slope), level=lambda _: torch.tensor(noise)
     )
     linear = SimpleNamespace(sensitivity=columns[None], residual=residual[None])
     fitted = SimpleNamespace(shared=torch.zeros(4))
@@ -44,7 +44,7 @@ def test_what_is_stated_of_a_common_scale_counts(deviation, monkeypatch):
 
 
 def test_an_error_is_that_of_noise_and_of_what_is_known():
-    """By (A'A)^-1 (A' s^2 A + level K' K) (A'A)^-1 for one column."""
+    """By (A'A)^-1 (A' s^2 A + variance K' K) (A'A)^-1 for one column."""
     drawn = torch.Generator().manual_seed(1)
     seen, known, sigma = (
         torch.randn(8000, 1, generator=drawn, dtype=torch.float64),

@@ -78,7 +78,7 @@ def levels_by_record(outcome: Outcome, cause: str, evidence: Evidence) -> Rows:
     residual = project_out(prediction.residual[0].unsqueeze(-1), own).flatten()
     residual = residual - basis[:samples] @ (basis[:samples].T @ residual)
     level = float(problem.level(prediction.residual[0]))
-    errors = _errors(columns, residual, block_of(outcome, evidence), level)
+    errors = _errors(columns, residual, block_of(outcome, evidence), level**2)
     rows = []
     for name, error in zip(places, errors.tolist(), strict=True):
         value = spread * outcome.values[name]
@@ -166,15 +166,15 @@ def _said(rows: Rows, what: str, unit: str, digits: int) -> list[str]:
     return [f"The {what} is {listed}: no one figure stands for all of them."]
 
 
-def _errors(columns: Tensor, residual: Tensor, block: int, level: float) -> Tensor:
+def _errors(columns: Tensor, residual: Tensor, block: int, variance: float) -> Tensor:
     """Standard errors of coefficients, (columns,), whose residuals are correlated within blocks.
 
-    Rows of columns beyond the samples are what is known of parameters, whose variance is `level`.
+    Rows of columns beyond the samples are what is known of parameters, of this `variance`.
     """
     inverse, samples = torch.linalg.pinv(columns.T @ columns), len(residual)
     scores = (columns[:samples] * residual.unsqueeze(1))[: samples // block * block]
     blocks = scores.unflatten(0, (-1, block)).sum(1)
-    of_known = level * columns[samples:].T @ columns[samples:]
+    of_known = variance * columns[samples:].T @ columns[samples:]
     return (inverse @ (blocks.T @ blocks + of_known) @ inverse).diagonal().clamp(min=0).sqrt()
 
 

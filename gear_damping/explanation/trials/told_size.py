@@ -146,7 +146,7 @@ def _statistic(outcome: Outcome, change: Tensor, lags: list[int]) -> float:
     residual = outcome.fitted.prediction.residual[0]
     shown, known = change[: residual.numel()], change[residual.numel() :]
     products = (shown.reshape(residual.shape) * residual).unsqueeze(-1)
-    of_known = float(known.square().sum()) * float(outcome.problem.level(residual))
+    of_known = float(known.square().sum()) * float(outcome.problem.level(residual)) ** 2
     energy = float(change.square().sum())
     power = float(residual.square().sum()) / max(float((outcome.problem.response.weights > 0).sum()), 1.0)
     coloured = sum(float(long_run(one, lag)) for one, lag in zip(products, lags, strict=True)) + of_known
