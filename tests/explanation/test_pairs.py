@@ -151,3 +151,15 @@ def test_beside_a_nearer_cause_only_what_promises_to_leave_less_is_fitted(promis
     kind = type(state.bench)
     with patch.object(kind, "ranked", lambda *_: ranked), patch.object(kind, "full_fit", lambda *_: fit(cost=0.1)):
         assert len(steps._seconds(fit(cost=1.0), state, promised)) == fitted
+
+
+def test_no_pair_begins_with_what_was_dropped_as_of_no_known_size():
+    """It would take the place of the cause that was found without it, and be dropped again with that."""
+    first, other = fit(NAMES[0], cost=0.5), fit(NAMES[1], cost=0.3)
+    plain, found = SimpleNamespace(cause=SimpleNamespace(simpler=None)), []
+    for names in (NAMES[:2], NAMES[:1]):
+        known = bench(SearchSettings(), [], library=dict.fromkeys(names, plain))
+        state = State(known, outcome(), first.outcome, (SimpleNamespace(name=NAMES[0]),), first_fits=(first, other))
+        with patch.object(steps, "_bases", lambda fits, _: found.append([one.name for one in fits]) or []):
+            assert steps._instead(state) == []
+    assert found == [list(NAMES[:2]), list(NAMES[:1])]

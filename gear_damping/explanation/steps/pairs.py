@@ -65,7 +65,7 @@ def with_pair_of_a_nearer(state: State) -> State | None:
     if len(state.accepted) != 1 or not state.ranked:
         return None
     bench, most = state.bench, len(state.outcome.hypothesis.free)
-    fits = [fit for fit in state.first_fits if fit.is_seen_in_fit and len(fit.outcome.hypothesis.free) <= most]
+    fits = [fit for fit in _first_fits(state) if len(fit.outcome.hypothesis.free) <= most]
     nearer = [fit for fit in _bases(fits, state) if fit.outcome.fitted.cost < state.outcome.fitted.cost]
     if not nearer or bench.budget.refuses(PAIRS):
         return None
@@ -118,10 +118,16 @@ def _with(pair: Pair, state: State) -> State:
 
 def _instead(state: State) -> list[Pair]:
     """Pairs whose first effect took at least half of what the first cause did when both were tried by themselves."""
-    shares = {fit.name: _taken(fit, state) for fit in state.first_fits if fit.is_seen_in_fit}
+    shares = {fit.name: _taken(fit, state) for fit in _first_fits(state)}
     least = state.bench.settings.pair_share * shares.get(state.accepted[0].name, 1.0)
-    rivals = [fit for fit in state.first_fits if fit.is_seen_in_fit and shares[fit.name] >= least]
+    rivals = [fit for fit in _first_fits(state) if shares[fit.name] >= least]
     return [pair for fit in _bases(rivals, state) for pair in _pairs(fit, True, state)]
+
+
+def _first_fits(state: State) -> list[Refit]:
+    """The fits of the first round that show, of effects that are candidates still: no size of the others was told."""
+    known = state.bench.evidence.library
+    return [fit for fit in state.first_fits if fit.is_seen_in_fit and fit.name in known]
 
 
 def _taken(fit: Refit, state: State) -> float:
