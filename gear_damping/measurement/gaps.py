@@ -9,7 +9,8 @@ and the values must have moved over them as long as the stamps say.
 
 A clock that jumps by part of a step and a recorder that paused look alike in the stamps; the values tell them apart.
 Where every step is another one, a program asked for the samples one by one and wrote down when: a long step is one
-that came late, at its stamp, and the same two things are asked of it as of a gap.
+that came late, at its stamp, and the same two things are asked of it as of a gap; where there are gaps enough for the
+values to tell, they may say that of a pause, and not that of a jump.
 """
 
 from dataclasses import replace
@@ -86,8 +87,10 @@ def _polled(record: Record) -> Record:
     usual = float(np.median(steps))
     if not late or scatter(steps) < _POLLED * usual or not _wander(np.minimum(steps, _GAP * usual)):
         return record
-    if any(share_over_gaps(channel.values, record.time)[1] < np.inf for channel in record.channels.values()):
-        return record  # enough gaps for the values to tell
+    shares = [share_over_gaps(channel.values, record.time) for channel in record.channels.values()]
+    told = [one for one in shares if one[1] < np.inf]  # by gaps enough
+    if told and not (all(_may_be(1.0, one) for one in told) and any(not _may_be(0.0, one) for one in told)):
+        return record
     missing = max(1, round(float(steps.max()) / usual) - 1)
     if not _all_follow(record, missing):
         return record
@@ -97,6 +100,11 @@ def _polled(record: Record) -> Record:
     )
     note = Finding("uneven_stamps", message, channel="time", severity="note")
     return replace(record, findings=(*(f for f in record.findings if f not in late), note))
+
+
+def _may_be(share: float, found: tuple[float, float]) -> bool:
+    """Whether a share that was found, with its standard error, may be this one: 1 of a pause, 0 of a clock's jump."""
+    return abs(found[0] - share) <= _ERRORS * found[1]
 
 
 def _wander(steps: NDArray[np.float64]) -> bool:

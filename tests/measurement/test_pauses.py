@@ -217,3 +217,18 @@ def test_shifts_by_less_than_a_step_are_a_fault_where_the_values_contradict_them
     assert finding.severity == severity
     assert ("the recorder paused, and" in finding.message) is (moves == "paused")
     assert ("the values do not tell" in finding.message) is (moves == "by chance")
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("paused", [True, False])
+def test_long_steps_of_a_program_that_asks_are_pauses_unless_the_values_say_otherwise(paused, seed, tmp_path):
+    """A flight logger with steps of 9 ms and some of 20 to 60: by where a window began it was refused or was not."""
+    random = np.random.default_rng(seed)
+    steps = 0.009 * random.uniform(0.7, 1.3, size=SAMPLES)
+    late = random.choice(np.arange(10, SAMPLES - 10), 40, replace=False)
+    steps[late] = random.uniform(0.02, 0.06, size=late.size)
+    stamps = np.cumsum(steps)
+    time = stamps if paused else np.linspace(0, stamps[-1], SAMPLES)
+    values = np.sin(2 * np.pi * 0.38 * time) + 0.01 * random.normal(size=SAMPLES)
+    found = [one for one in loaded(tmp_path, stamps, values).findings if one.channel == "time"]
+    assert any(one.severity == "data_problem" for one in found) != paused
