@@ -90,24 +90,29 @@ def test_it_is_tried_where_nothing_else_is_found_and_each_record_has_a_model_of_
 
 
 @pytest.mark.parametrize(
-    ("misfit", "squares", "is_validated", "is_told", "instead"),
+    ("misfit", "squares", "is_validated", "is_told", "other", "instead"),
     [
-        (50.0, 0.2, True, True, True),
-        (1.0, 0.2, True, True, False),  # the law leaves noise
-        (50.0, 0.3, True, True, False),  # it leaves no more than twice as much, with one figure
-        (50.0, 0.2, False, True, False),
-        (50.0, 0.2, True, False, False),
+        (50.0, 0.2, True, True, 2.0, True),
+        (1.0, 0.2, True, True, 2.0, False),  # the law leaves noise
+        (50.0, 0.3, True, True, 2.0, False),  # it leaves no more than twice as much, with one figure
+        (50.0, 0.2, False, True, 2.0, False),
+        (50.0, 0.2, True, False, 2.0, False),
+        (50.0, 0.2, True, True, 0.4, False),  # another law leaves less of what is fitted, for all records alike
     ],
 )
 def test_it_takes_the_place_of_a_law_for_all_that_leaves_far_more(
-    misfit, squares, is_validated, is_told, instead, monkeypatch
+    misfit, squares, is_validated, is_told, other, instead, monkeypatch
 ):
-    """Of pendulums of six lengths a law whose frequency falls with the swing follows some."""
+    """Of pendulums of six lengths a law whose frequency falls with the swing follows some.
+
+    Of one whose swing dies away three windows have three frequencies, and a cubic spring leaves less of each.
+    """
     law, own, nominal = fit("sine_restoring", squares=0.5), fit("stiffness_by_record", squares=squares), outcome()
     own.differs = True
     monkeypatch.setattr(single, "_told_alone", lambda _: own if is_told else None)
     monkeypatch.setattr(State, "is_validated", lambda *_: is_validated)
     monkeypatch.setattr(State, "beyond_sensor", lambda *_: left(40.0, misfit))
-    state = State(bench(SearchSettings(), [(nominal, None)]), nominal, nominal)
+    others = (fit("cubic_stiffness", cost=other),)
+    state = State(bench(SearchSettings(), [(nominal, None)]), nominal, nominal, rejected=others)
     assert single.differing_instead(law, state) is (own if instead else None)
     assert single.differing_instead(own, state) is None

@@ -220,15 +220,22 @@ def cause_of_records(state: State) -> State | None:
 def differing_instead(best: Refit, state: State) -> Refit | None:
     """What differs between records that are followed one by one, where a law for all of them leaves far more.
 
-    Of pendulums of six lengths a law whose frequency falls with the swing follows some, as their swings differ too.
+    Of pendulums of six lengths a law whose frequency falls with the swing follows some, as their swings differ too. Of
+    one pendulum in ever smaller swings each record has a frequency of its own, and a law of one figure leaves less of
+    what is fitted: what is left out is told a frequency of its own as well.
     """
     if state.accepted or best.differs:
         return None
     if state.beyond_sensor(best.outcome).misfit <= state.bench.settings.small_misfit:  # it leaves noise
         return None
     own = _told_alone(state)
-    is_better = own is not None and APART * own.outcome.left_out_cost < best.outcome.left_out_cost
-    return own if is_better and state.is_validated(own) else None
+    if own is None or APART * own.outcome.left_out_cost >= best.outcome.left_out_cost:
+        return None
+    laws = [
+        fit for fit in (best, *state.rejected) if fit.is_seen_in_fit and not fit.differs and state.is_validated(fit)
+    ]
+    is_nearest = all(own.outcome.fitted.cost <= law.outcome.fitted.cost for law in laws)
+    return own if is_nearest and state.is_validated(own) else None
 
 
 def _told_alone(state: State) -> Refit | None:
