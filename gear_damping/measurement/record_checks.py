@@ -16,12 +16,13 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_damping.measurement.checks import STRUCK, TURNING, check_channel
+from gear_damping.measurement.checks import APPLIED, STRUCK, TURNING, check_channel
 from gear_damping.measurement.encoders import FROM_ENCODERS
 from gear_damping.measurement.irregular_stamps import written_on_change
 from gear_damping.measurement.lost_samples import lost_samples
 from gear_damping.measurement.record import Channel, Finding, Record
 from gear_damping.measurement.shaft_checks import LARGEST_TRANSMISSION_ERROR, check_shafts
+from gear_damping.measurement.staircase import leaps_from_rests
 from gear_damping.measurement.vocabulary import INPUTS
 
 WHOLE_SPEEDS = ("pinion_speed", "gear_speed")  # hold the rotation, beside which what is fitted is little
@@ -29,6 +30,7 @@ NEVER_STRAIGHT = ("displacement", "transmission_error", "acceleration")  # a spe
 STRAIGHT, FEWEST_OF_A_LINE = 1e-6, 16  # of its range; samples: fewer steps of a converter may lie on a line
 MOST_NOISE = 30.0  # times what a channel holds: no guess of a noise is so far off, and a wrong unit is 1000 times
 OVERSAMPLED = "oversampled"
+_STALE = 0.5  # of the samples that repeat the one before, from which most of what is read was measured earlier
 SAMPLES_PER_PERIOD = 100  # of the fastest content; more only slow the work
 _ENOUGH = 40  # of them: harmonics that tell a law by little energy have four of them up to the tenth
 _CONTENT = 0.999  # share of the energy that counts as content
@@ -158,7 +160,7 @@ def check_record(record: Record) -> tuple[Finding, ...]:
         found.append(stamps_against_values(record))
     disagree = any(finding.kind == "tooth_ratio" for finding in record.findings)
     straight = [] if disagree else [_straight(channel) for channel in record.channels.values()]  # nor a lag, nor a pace
-    found += [*map(_drowned, record.channels.values()), *straight]
+    found += [*map(_drowned, record.channels.values()), *map(_stale, record.channels.values()), *straight]
     found += [lost_samples(channel, record.time) for channel in record.channels.values()]
     found += [_magnitude(record), _rests_elsewhere(record)]
     found += [] if disagree or any(straight) else [_oversampled(record)]
@@ -178,6 +180,18 @@ def _drowned(channel: Channel) -> Finding | None:
         f"{held / one:.4g} {channel.declared_unit} (root mean square about its mean); check its unit"
     )
     return Finding("noise_above_signal", message, channel=channel.name)
+
+
+def _stale(channel: Channel) -> Finding | None:
+    """The note of a response that was read more often than it was measured, as off a camera's pictures."""
+    repeated = float(np.mean(np.diff(channel.values) == 0)) if channel.values.size > 1 else 0.0
+    if channel.name in APPLIED or repeated < _STALE or not leaps_from_rests(channel.values):
+        return None
+    message = (
+        f"{100 * repeated:.2g} % of the samples of {channel.name} repeat the one before, and then it leaps: it was "
+        "read more often than measured, and what is late looks like noise; keep the rows alone at which it changes"
+    )
+    return Finding("stale_values", message, channel=channel.name, severity="note")
 
 
 def _straight(channel: Channel) -> Finding | None:

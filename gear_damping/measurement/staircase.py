@@ -19,16 +19,27 @@ def is_staircase(values: NDArray[np.float64]) -> bool:
     levels = np.unique(values)
     if len(levels) <= LEVELS:
         return len(levels) == LEVELS
-    changes = np.abs(np.diff(values))
-    moved = changes[changes > 0]
-    runs = np.diff(np.flatnonzero(np.concatenate([[True], changes > 0, [True]])))
-    usual = np.median(runs)  # a force that rests for long between strokes is no staircase: most of its steps are short
+    usual = _usual_run(values)  # a force that rests for long between strokes is no staircase: most steps are short
     if len(levels) <= FEW_LEVELS and usual >= LONG_RUN:
         return True
     places = np.abs(np.diff(np.searchsorted(levels, values)))
     if usual >= SHORT_RUN and np.median(places[places > 0]) >= SKIP:
         return True
-    return bool(usual >= LEAST_RUN and np.median(moved) >= JUMP * np.diff(levels).min())
+    return leaps_from_rests(values)
+
+
+def leaps_from_rests(values: NDArray[np.float64]) -> bool:
+    """Whether a series (time,) stands still for two samples or more, mostly, and then leaps by several steps."""
+    moved = np.abs(np.diff(values))
+    moved, levels = moved[moved > 0], np.unique(values)
+    if len(levels) <= LEVELS:
+        return False
+    return bool(_usual_run(values) >= LEAST_RUN and np.median(moved) >= JUMP * np.diff(levels).min())
+
+
+def _usual_run(values: NDArray[np.float64]) -> float:
+    """Median count of samples for which a series stays at a value."""
+    return float(np.median(np.diff(np.flatnonzero(np.concatenate([[True], np.diff(values) != 0, [True]])))))
 
 
 def rests_between_jumps(values: NDArray[np.float64]) -> bool:

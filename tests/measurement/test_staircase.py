@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from gear_damping.measurement.record import Channel
+from gear_damping.measurement.record_checks import _stale
 from gear_damping.measurement.staircase import is_staircase
 
 RNG = np.random.default_rng(4)
@@ -30,3 +32,23 @@ INPUTS = {
 def test_steps_are_told_from_what_was_read(name):
     values, held = INPUTS[name]
     assert is_staircase(values) is held
+
+
+@pytest.mark.parametrize(
+    ("name", "stale", "step", "is_said"),
+    [
+        ("displacement", True, 0.0, True),
+        ("displacement", False, 0.0, False),
+        ("displacement", False, 0.4, False),  # a coarse converter repeats what it reads, and moves by its own step
+        ("force", True, 0.0, False),  # a command stays
+    ],
+)
+def test_a_response_that_is_read_more_often_than_it_is_measured_is_told(name, stale, step, is_said):
+    """A webcam of 12 pictures a second behind rows of 29."""
+    time = np.arange(600) / 29
+    at = np.floor(time * 12) / 12 if stale else time
+    values = 20 * np.exp(-0.05 * at) * np.cos(2 * np.pi * 1.16 * at)
+    values = np.round(values, 4) if not step else step * np.round(values / step)
+    found = _stale(Channel(name, values, "m", "m", 1.0))
+    assert (found is not None) == is_said
+    assert not found or found.message.startswith("59 % of the samples of displacement repeat the one before")
