@@ -264,14 +264,14 @@ def _by_name(index: int, column: _Column) -> str:
 
 
 def _behind_row_numbers(columns: Sequence[_Column]) -> Callable[[int, _Column], str]:
-    """What sees a second column that advances evenly where neither it nor the first, which counts the rows, is named.
+    """What sees a second column that goes on about evenly, where neither it nor the first, of row numbers, is named.
 
     Whole numbers may be the counts of a shaft.
     """
     bare = [one for one in columns[:2] if one.unit is None and not _named(one) and one.inside.size >= FEWEST_STAMPS]
-    follows = len(bare) == 2 and counts_rows(bare[0].inside) and _is_even(bare[1])
+    follows = len(bare) == 2 and counts_rows(bare[0].inside) and _is_nearly_even(bare[1])
     follows = follows and bool(np.any(bare[1].inside != np.round(bare[1].inside)))
-    return lambda index, column: "advances evenly behind the numbers of the rows" if follows and index == 1 else ""
+    return lambda index, column: f"{_says(column)} behind the numbers of the rows" if follows and index == 1 else ""
 
 
 def _by_steps(index: int, column: _Column) -> str:

@@ -62,3 +62,13 @@ def test_seconds_and_their_parts_are_a_clock_and_no_encoder(tmp_path):
 
 def test_a_setting_in_a_cell_of_its_own_among_names_states_the_rate():
     assert stated_rate([["CH1V", "CH2V", "t0 = -3.0e-01", "tInc = 5.0e-04", ""]]) == ("tInc", pytest.approx(2000.0))
+
+
+def test_stamps_that_were_rounded_behind_numbers_of_rows_are_the_time(tmp_path):
+    """An ECP drive writes the number of the sample, and seconds of three digits in steps of 8.854 ms."""
+    rows = [f"{k} {0.008854 * k:.3f} {x:.4f}" for k, x in enumerate(MOTION)]
+    (tmp_path / "a.txt").write_text("\n".join(rows) + "\n")
+    found, _, listed = guessed(read_table(tmp_path / "a.txt"))
+    assert (found.time.index, found.time.unit) == (1, "s")
+    assert found.rate == pytest.approx(1 / 0.008854, rel=1e-3)
+    assert [one.column.reference for one in listed if one.used] == [2]
