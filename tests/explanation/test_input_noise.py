@@ -129,6 +129,7 @@ def test_a_gear_pair_is_driven_by_torques_without_noise_unless_it_moves_with_it(
     monkeypatch.setattr(calibrate, "InitialValues", lambda **_: None)
     monkeypatch.setattr(calibrate, "fit_hypothesis", lambda *_, **__: after)
     monkeypatch.setattr(calibrate, "moves_with_noise", lambda *_: moves)
+    monkeypatch.setattr(calibrate, "is_overdamped", lambda *_: False)
     found = calibrate.NOMINAL[Trait.TEETH](evidence, None)
     assert found.nominal is (before if moves else after)
     assert found.evidence.fit[0] is (record if moves else quiet)
