@@ -26,9 +26,9 @@ class MadeUpEvidence:
         return trait is Trait.TEETH and self.teeth
 
 
-def outcome_of(ratio, deviation=inf):
+def outcome_of(ratio, deviation=inf, held="viscous_damping.damping_coefficient"):
     """Of a mesh with so much of critical damping, c = 2 zeta (k m)^.5."""
-    free = [SimpleNamespace(name="viscous_damping.damping_coefficient", deviation=deviation)]
+    free = [SimpleNamespace(name=held, deviation=deviation)]
     damping = 2 * ratio * (STIFFNESS * MASS) ** 0.5
     return SimpleNamespace(figures=(MASS, damping, STIFFNESS), problem=SimpleNamespace(free=free), is_finite=True)
 
@@ -38,9 +38,9 @@ def made_up_models(monkeypatch):
     monkeypatch.setattr(module, "linear_of", lambda outcome: outcome.figures)
 
 
-def said(ratio, nominal_deviation=inf, uncertainty=None, teeth=True):
+def said(ratio, nominal_deviation=inf, uncertainty=None, teeth=True, **free):
     evidence = MadeUpEvidence(Known(STATED, uncertainty or {}), teeth)
-    nominal = outcome_of(ratio, nominal_deviation)
+    nominal = outcome_of(ratio, nominal_deviation, **free)
     return overdamped(SimpleNamespace(outcome=nominal, nominal=nominal, bench=SimpleNamespace(evidence=evidence)))
 
 
@@ -59,6 +59,8 @@ def test_less_and_other_rigs_are_not(ratio, teeth):
 def test_that_a_mesh_was_held_is_said_where_the_file_does_not_say_so_itself():
     assert said(0.03, nominal_deviation=0.5) == HELD
     assert not said(0.03, nominal_deviation=0.5, uncertainty={"damping_ratio": 0.5})
+    assert said(0.03, nominal_deviation=0.1, held="fourier_mesh_stiffness.maximum") == HELD
+    assert not said(0.03, nominal_deviation=0.1, held="inertia_pinion")
 
 
 def test_it_is_held_by_what_is_stated_without_an_uncertainty():

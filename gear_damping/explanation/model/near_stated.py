@@ -6,7 +6,7 @@ from math import isfinite
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.linear import linear_of
-from gear_damping.identification.oscillator.linear_model import DAMPING
+from gear_damping.explanation.model.nominal_gear_pair import FLAT
 from gear_damping.physics.systems.traits import Trait
 
 CRITICAL = 1.0  # no mesh comes near it: lubricated steel has a hundredth to a tenth
@@ -41,6 +41,7 @@ def near_stated(evidence: Evidence) -> Evidence | None:
 
 
 def is_held_near_stated(nominal: Outcome, evidence: Evidence) -> bool:
-    """Whether the mesh was held so, with no such uncertainty in the file."""
+    """Whether something of the mesh was held so, with no such uncertainty in the file."""
     held = {p.name for p in nominal.problem.free if isfinite(p.deviation)}
-    return evidence.has(Trait.TEETH) and DAMPING in held and "damping_ratio" not in evidence.known.uncertainty
+    added = {FLAT[name] for name in WITHIN if name not in evidence.known.uncertainty}
+    return evidence.has(Trait.TEETH) and bool(added & held)

@@ -10,8 +10,8 @@ from gear_damping.explanation.state import State
 
 STIFFNESS, RATIO = (f"{100 * WITHIN[name]:.0f} %" for name in ("mesh_stiffness_max", "damping_ratio"))
 HELD = (
-    "Fitted freely, the mesh came out damped beyond critical, which none is: its stiffness was held near what is "
-    f"stated, with a standard deviation of {STIFFNESS}, and its damping ratio with one of {RATIO}. State both with an "
+    "Fitted freely, the mesh came out damped beyond critical, which none is: it was held near what is stated, the "
+    f"stiffness with a standard deviation of {STIFFNESS}, the damping ratio with one of {RATIO}. State them with an "
     "`uncertainty` of your own if you know better."
 )
 
