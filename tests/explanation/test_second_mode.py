@@ -216,3 +216,13 @@ def test_how_heavy_the_second_mass_is_stays_where_it_was_put_in_a_free_swing_alo
         traits=frozenset({Trait.REST}),
     )
     assert {recipe.settled for recipe in SecondMode.cause.recipes_for(rig)} == {settled}
+
+
+def test_a_mode_far_below_the_first_is_sought_over_few_of_its_cycles():
+    """A torsion pendulum of .95 Hz that sways at .26 Hz, of which a window of 20 s holds five cycles."""
+    time = torch.arange(1000, dtype=torch.float64) / 50.0
+    motion = torch.exp(-0.05 * time) * torch.cos(2 * math.pi * 0.95 * time)
+    noise = torch.randn(1000, generator=torch.Generator().manual_seed(1), dtype=torch.float64)
+    left = 0.008 * torch.cos(2 * math.pi * 0.26 * time) + 0.002 * noise
+    found = strongest_frequencies([(FitRecord("a", motion, 50.0), left)], 0.95)
+    assert found[0] == pytest.approx(0.26, rel=0.1)

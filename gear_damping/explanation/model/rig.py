@@ -34,7 +34,7 @@ SWELL_PERIODS = 1.0  # natural ones, over which an amplitude is taken: modes an 
 SWELLS = 2.0  # times what it had fallen to: noise beside a motion that is seen does not double it
 SEEN = 0.1  # of the largest amplitude: less may be the noise behind the motion's end
 HIGHEST = 0.45  # of the sampling rate
-FEWEST_CYCLES = 8.0  # in a record, below which a band of its spectrum holds too few lines
+FEWEST_CYCLES = 4.0  # in a record: of fewer a band of its spectrum holds too few lines, and a slow drift looks the same
 GEAR_ORDERS = 3  # of the gear's shaft
 
 
