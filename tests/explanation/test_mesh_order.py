@@ -28,12 +28,18 @@ def _record(
 
 
 def _found(
-    teeth: int | None, orders: dict[float, float], lines=None, speeds=(150.0, 190.0), gear=None, is_stated=False
+    teeth: int | None,
+    orders: dict[float, float],
+    lines=None,
+    speeds=(150.0, 190.0),
+    gear=None,
+    is_stated=False,
+    name="transmission_error",
 ) -> list[str]:
     records = tuple(_record(orders, speed, lines or {}, k, is_stated) for k, speed in enumerate(speeds))
     parameters = {} if teeth is None else {"n_teeth_pinion": float(teeth)}
     parameters |= {} if gear is None else {"n_teeth_gear": float(gear)}
-    channel = Channel("transmission_error", np.zeros(2), "m")
+    channel = Channel(name, np.zeros(2), "m")
     evidence = Evidence("gear_pair", records[:1], records[1:], Known(parameters, {}), channel, one_record=False)
     return [finding.message for finding in mesh_order_faults(evidence)]
 
@@ -145,6 +151,23 @@ def test_what_drifts_over_a_turn_is_no_mesh_between_the_lines(speeds):
 def test_a_mesh_counted_too_finely_is_found_by_its_high_harmonics():
     (message,) = _found(23, {46: 0.3, 92: 0.2, 184: 1.0}, gear=41)
     assert "mesh 46 times a turn" in message
+
+
+@pytest.mark.parametrize(("name", "power"), [("gear_speed", 1), ("acceleration", 2)])
+@pytest.mark.parametrize("factor", [0.5, 1, 2])
+def test_of_a_rate_the_turns_are_counted_too(name, power, factor):
+    """An accelerometer weighs the fourth harmonic by sixteen; no other count is blamed where the mesh is there."""
+    mesh = {1: 1.0, 2: 0.35, 3: 0.15, 4: 0.2}
+    orders = {23 * factor * k: size * k**power / 3 for k, size in mesh.items()}
+    found = _found(23, orders, gear=41, name=name)
+    assert len(found) == (factor != 1)
+    assert all(f"the teeth mesh {23 * factor:g} times a turn" in one for one in found)
+
+
+@pytest.mark.parametrize(("name", "power"), [("gear_speed", 1), ("acceleration", 2)])
+def test_a_rate_that_rings_at_even_harmonics_blames_no_count(name, power):
+    mesh = {1: 1.0, 2: 3.0, 3: 0.3, 4: 3.0}
+    assert _found(24, {24 * k: size * k**power / 9 for k, size in mesh.items()}, name=name) == []
 
 
 def test_of_one_speed_no_harmonic_is_told_from_a_line_of_the_structure():

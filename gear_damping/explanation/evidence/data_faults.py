@@ -32,6 +32,7 @@ COUNTED = (  # what was wrong where the turns of an angle are not those of the m
     "check counts_per_revolution (lines, or the two or four counts of each) and the unit of the angle",
 )
 STATED = "the speed that is given", "check sampling_rate, and pinion_speed with its unit"  # and those of a speed
+RATES = {"pinion_speed": 1, "gear_speed": 1, "acceleration": 2}  # of shafts, derivatives of their angles by this order
 LACKING = 0.01  # of the energy: of a wave of two stiffnesses the first harmonic is never smaller than the second
 
 
@@ -46,7 +47,9 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
     A comb that follows the shaft and holds much of every record is a mesh, unless the declared order stands out of the
     combs about it too: orders of the load, of the other shaft and lines of the structure then lie beside a mesh.
     """
-    if not evidence.has(Trait.TEETH) or evidence.channel.name != evidence.base.response:
+    name = evidence.channel.name
+    is_error = name == evidence.base.response
+    if not evidence.has(Trait.TEETH) or not (is_error or name in RATES):
         return []
     records = evidence.records
     counts = shaft_of(records[0], evidence).teeth
@@ -54,11 +57,13 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
     if teeth * min(float(np.ptp(angle)) for angle in shafts) < FEWEST_TEETH * 2 * np.pi:
         return []
     series = [record.response.numpy() - float(record.response.mean()) for record in records]
-    if _at_other_speeds(records, shafts) and (factor := _miscounted(series, shafts, counts)):
+    if _at_other_speeds(records, shafts) and (factor := _miscounted(series, shafts, counts, RATES.get(name, 0))):
         counted = all("pinion_angle" in record.inputs for record in records)
         given, remedy = COUNTED if counted else STATED
         message = f"the teeth mesh {factor * teeth:g} times a turn of {given}, and the pinion has {teeth}: {remedy}"
         return [Finding("turns_miscounted", message, channel=evidence.channel.name)]
+    if not is_error:  # its high harmonics are the large ones, and those of another comb too
+        return []
     if units := _other_unit(series, shafts, counts):
         message = (
             f"the mesh order {teeth} is absent, and stands where it would with a pinion that turns as if the number of "
@@ -86,13 +91,14 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
     return [Finding("mesh_order_absent", message, channel=evidence.channel.name)]
 
 
-def _miscounted(series: Sequence[NDArray], shafts: Sequence[NDArray], counts: tuple[int, int]) -> float:
+def _miscounted(series: Sequence[NDArray], shafts: Sequence[NDArray], counts: tuple[int, int], order: int = 0) -> float:
     """By what the order of the mesh is off where turns were counted by another number of counts; 0 where by none.
 
     Of all harmonics of a quarter of the tooth count, those of the mesh that is there hold the energy of every record.
     Those between the harmonics of the declared mesh may be another machine's on the shaft, beside the mesh, if they go
     round a whole number of times in a turn of a shaft; if they do in none, the mesh alone makes them. Records that are
-    too short for the lowest, or too coarse for the highest, tell nothing.
+    too short for the lowest, or too coarse for the highest, tell nothing. What is lacking of a rate, a derivative of
+    this order in time, is so of the motion.
     """
     teeth, _ = counts
     passed = [teeth * float(np.ptp(angle)) / (2 * np.pi) for angle in shafts]
@@ -118,9 +124,10 @@ def _miscounted(series: Sequence[NDArray], shafts: Sequence[NDArray], counts: tu
         is_there = shares[:, others].sum(1).min() >= STRONG
         if is_there and (shares[:, own].sum(1) < FAINT * shares[:, others].sum(1)).all():
             return step / DECODED
+    moved = shares / number.astype(float) ** (2 * order)
     for factor in (DECODED, 2):
         there = number % (factor * DECODED) == 0
-        lacking = shares[:, own & ~there].sum(1) < LACKING * shares[:, there].sum(1)
+        lacking = moved[:, own & ~there].sum(1) < LACKING * moved[:, there].sum(1)
         if shares[:, there].sum(1).min() >= STRONG and lacking.all():
             return float(factor)
     return 0.0
