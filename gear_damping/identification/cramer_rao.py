@@ -21,6 +21,7 @@ from gear_damping.simulation.solver_settings import Solver
 
 START = ("initial_displacement", "initial_velocity")
 STEP = 1e-5  # of what counts as a step of order one, on either side
+LEAST_SHARE = 1e-8  # of a slope, that others do not have: two that are one by theory differ by 6e-11 in differences
 SMALLEST = 1e-300  # of a scale that is divided by, in its own unit: one of 0 stays finite
 
 
@@ -73,10 +74,9 @@ def cramer_rao(
     for place, name in enumerate(names):
         if name == DAMPING_RATIO:  # the ratio grows with the coefficient
             columns[..., place] *= (runs.values[flat[place]] / runs.stated_ratio_percent).unsqueeze(-1)
-    weights = 1 / torch.as_tensor(noise, dtype=torch.float64).expand(len(columns)).square()
-    information = columns.mT @ columns * weights[:, None, None]
+    level = torch.as_tensor(noise, dtype=torch.float64).expand(len(columns))
     prior = torch.tensor([(expected or {}).get(name, inf) for name in names], dtype=torch.float64)
-    return Bound(names, _inverse(information + torch.diag(prior**-2)))
+    return Bound(names, covariance(columns / level[:, None, None], prior**-1))
 
 
 def _refuse(
@@ -160,8 +160,23 @@ def _start_scale(runs: Runs, name: str) -> Tensor:
     return runs.states[state].std(-1).clamp(min=SMALLEST)
 
 
-def _inverse(information: Tensor) -> Tensor:
-    """Of symmetric matrices whose units differ."""
-    size = information.diagonal(dim1=-2, dim2=-1).sqrt().clamp(min=SMALLEST)
-    both = size.unsqueeze(-1) * size.unsqueeze(-2)
-    return torch.linalg.inv(information / both) / both
+def covariance(columns: Tensor, known: Tensor) -> Tensor:
+    """Inverse of the information of slopes whose units differ; the variance of what they do not tell is infinite.
+
+    By an orthogonal factor, which keeps what the product of the slopes squares away: of two columns that are one but
+    for rounding their inverse holds anything.
+
+    Args:
+        columns: Slopes over the noise, (batch, time, n).
+        known: Of each unknown, one over how well it is known beforehand, (n,).
+    """
+    rows = torch.cat([columns, torch.diag(known).expand(len(columns), -1, -1)], 1)
+    size = rows.norm(dim=1).clamp(min=SMALLEST)
+    factor = torch.linalg.qr(rows / size.unsqueeze(1), mode="r").R
+    one = torch.eye(len(known), dtype=columns.dtype).expand_as(factor)
+    inverse = torch.linalg.solve_triangular(factor, one, upper=True)
+    found = inverse @ inverse.mT
+    variances = found.diagonal(dim1=-2, dim2=-1)
+    told = variances * LEAST_SHARE**2 < 1  # false of what is nan, too
+    variances[~told] = inf
+    return found / (size.unsqueeze(-1) * size.unsqueeze(-2))

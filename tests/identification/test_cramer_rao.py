@@ -8,7 +8,7 @@ import torch
 from scipy.optimize import least_squares
 
 import gear_damping as gd
-from gear_damping.identification.cramer_rao import cramer_rao
+from gear_damping.identification.cramer_rao import covariance, cramer_rao
 
 STIFFNESS, DAMPING, RATE, SAMPLES, NOISE = (2 * math.pi * 15) ** 2, 4.0, 500.0, 400, 2e-4
 START = (0.01, -0.3)
@@ -110,3 +110,15 @@ def test_two_laws_have_no_ratio_of_their_own():
     runs = gd.simulate(gd.Model(gd.Oscillator(stiffness=100.0), laws), sampling_rate=50, n_samples=50)
     with pytest.raises(gd.InputError, match="the model has 2 damping laws"):
         gd.bound(runs, snr_db=20)
+
+
+def test_two_slopes_that_are_one_but_for_rounding_have_no_bound():
+    """Squared, their difference is lost: an inverse held millions or nan, one on each machine."""
+    generator = np.random.default_rng(3)
+    first, other = generator.normal(size=300), generator.normal(size=300)
+    for difference, told in ((1e-10, False), (1e-6, True)):
+        columns = torch.tensor(np.stack([first, 2 * first + difference * generator.normal(size=300), other], -1))[None]
+        found = covariance(columns, torch.zeros(3, dtype=torch.float64))[0].diagonal()
+        assert bool(torch.isfinite(found[:2]).all()) == told
+        share = other - first * (first @ other) / (first @ first)
+        assert float(found[2]) == pytest.approx(1 / float(share @ share), rel=0.02)
