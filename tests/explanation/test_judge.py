@@ -121,6 +121,26 @@ def test_what_bends_to_each_record_as_far_as_it_can_is_none(is_one, at_bound, wo
     assert verdict(found, MUCH, excess_of(0.01, 1.05), is_one=is_one).word == word
 
 
+@pytest.mark.parametrize(("worth", "word"), [(3.5e-4, CONSISTENT), (0.5e-4, EXPLAINED)])
+def test_what_a_load_may_do_between_its_samples_is_no_cause(worth, word):
+    """A load straight between its samples moved a mass by .0001 % less, which a second mode took."""
+    found = search(accepted=(cause("second_mode"),), left=False)
+    before, after = excess_of(1.0e-4, 1.06), excess_of(-1.6e-4, 0.9)
+    assert verdict(found, before, after, between_samples=worth, not_random=0.09).word == word
+
+
+@pytest.mark.parametrize(("rest", "word"), [(1.1, EXPLAINED), (40.0, UNEXPLAINED)])
+def test_what_ends_at_a_bound_far_above_the_noise_of_the_sensor_is_none(rest, word):
+    """Of a servo whose friction differs between directions a low-pass of .50 Hz, the slowest that is tried, was named.
+
+    It left 12 % of what was missing, which four records of one step each do not tell from chance.
+    """
+    found = search(accepted=(cause(at_bound=True),), sensor=1000.0, rest=rest)
+    assert verdict(found, MUCH, excess_of(0.01, 1.05)).word == word
+    within = search(accepted=(cause(at_bound=False),), sensor=1000.0, rest=rest)
+    assert verdict(within, MUCH, excess_of(0.01, 1.05)).word == EXPLAINED
+
+
 def test_a_cause_of_other_sizes_beside_something_visible_is_a_part():
     """Nearly all is taken, but not by one size in all records, and what is left is not all random."""
     sizes = {True: EXPLAINED, False: PARTLY, None: EXPLAINED}

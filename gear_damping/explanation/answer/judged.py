@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from gear_damping.explanation.answer.acting import acts_as, also_as, inputs_and_loads
+from gear_damping.explanation.answer.between_samples import between_samples
 from gear_damping.explanation.answer.gain import nrmse
 from gear_damping.explanation.answer.levels import of_unit_spread, said_of_levels
 from gear_damping.explanation.answer.modes import modes_of
@@ -130,6 +131,7 @@ def _judged(found: Confirmed, notes: Sequence[str], least_t: float) -> tuple[Jud
         any_figures=unknown,
         scattered=scattered,
         is_stated_otherwise=bool(contradicts_stated(state.nominal, evidence)),
+        between_samples=between_samples(state),
         predicts_worse=bool(state.accepted) and found.is_opened and share_of_held_out(state).interval95[1] < 0,
     )
     said = verdict(state, before, after, known)

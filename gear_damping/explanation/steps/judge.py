@@ -17,9 +17,14 @@ TOO_STILL = "but something is left beside it, and the held-out records tell noth
 UNTOLD = "but there was no time to see whether it stands in for something else."
 WORSE = "but with it the held-out records are predicted worse than by their means."
 NO_BETTER = "but with it the held-out records are predicted worse than without."
+BETWEEN_SAMPLES = "but what the load does between its samples, which nobody has seen, may be as much."
 NOT_LESS = "but what is visible and not random stays."
 WITHIN_NOISE = "What is left is no more than the noise of the held-out records, and is not all random."
 AT_BOUND = "but it has run into the end of what it can be, and leaves most: it stands in for something else."
+AT_BOUND_ABOVE_NOISE = (
+    "but it has run into the end of what it can be, and leaves more than the noise of the sensor: it stands in for "
+    "something else."
+)
 OTHER_FIGURES = (
     "The simulation follows the records, but with figures far from those that are stated: one of these is wrong, or "
     "what measured the records has a wrong gain, which bends them."
@@ -91,6 +96,7 @@ class Known:
         is_stated_otherwise: Whether the nominal model has figures far from what is stated of them.
         is_short: Whether held-out records are too short to judge more than what is missing of the power in them.
         predicts_worse: Whether held-out records are predicted clearly worse with the causes than without them.
+        between_samples: What a load may do between its samples, in % of the fitted records' variance.
     """
 
     converged: bool = True
@@ -109,6 +115,7 @@ class Known:
     scattered: str = ""
     is_stated_otherwise: bool = False
     predicts_worse: bool = False
+    between_samples: float = 0.0
 
     @property
     def unsettled(self) -> tuple[str, ...]:
@@ -136,7 +143,7 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         not is_visible(found.left) and after.misfit <= settings.small_misfit
     )
     further = (taken.sentence, *_not_told_apart(confused), *known.unsettled)
-    if why := _is_none(before, known):
+    if why := _is_none(before, after, known):
         return _not_established(found, before, known, why)
     if taken.is_faint and taken.share < settings.least_share:
         return _not_established(found, before, known, NOT_LESS)
@@ -154,6 +161,8 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
     is_at_end = any(found.is_at_bound(cause) for cause in found.accepted)
     if known.is_one is False and is_at_end:  # one that bends to each record, as far as it can
         return _not_established(found, before, known, OTHER_SIZES)
+    if is_at_end and found.beyond_sensor(found.outcome).misfit > settings.small_misfit:
+        return _not_established(found, before, known, AT_BOUND_ABOVE_NOISE)
     is_part = known.whole < settings.taken_by_one
     is_unsteady = before.misfit < settings.random_misfit  # held-out: less noise
     if is_part and is_unsteady:
@@ -179,8 +188,10 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
     return Verdict(EXPLAINED, (f"{missing}: {said}.", *further, *same, *_small_residual(found, after)))
 
 
-def _is_none(before: Excess, known: Known) -> str:
+def _is_none(before: Excess, after: Excess, known: Known) -> str:
     """Why causes are none, whatever they take; empty where they may be some."""
+    if max(before.percent - after.percent, known.fitted) < known.between_samples:
+        return BETWEEN_SAMPLES
     if known.stands_in or known.predicts_worse:
         return known.stands_in or NO_BETTER
     return TOO_SHORT if known.is_short and not before.significant else ""

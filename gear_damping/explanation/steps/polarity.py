@@ -11,9 +11,11 @@ from dataclasses import replace
 from gear_damping.errors import InputError
 from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.followed import of_one_flank
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Finding
+from gear_damping.physics.systems.traits import Trait
 
 Fit = Callable[[Evidence], Outcome]
 FEW = 2  # records on which the opposite sign is tried before all: each fit of a pair of gears takes long
@@ -69,10 +71,15 @@ def _loses_few(evidence: Evidence, fitted: Fit) -> bool:
 
 
 def _few(evidence: Evidence) -> Evidence:
-    """The evidence with those records alone that move most; as it is where there are no more."""
-    if len(evidence.fit) <= FEW:
-        return evidence
-    return replace(evidence, fit=tuple(sorted(evidence.fit, key=ac_energy, reverse=True)[:FEW]))
+    """The evidence with those records alone that move most; as it is where there are no more.
+
+    Of a pair of gears those on one flank: no nominal model follows one in which flanks change, with either sign, and
+    to find that out takes minutes.
+    """
+    told = of_one_flank(evidence) if evidence.has(Trait.TEETH) else evidence
+    if len(told.fit) <= FEW:
+        return told
+    return replace(told, fit=tuple(sorted(told.fit, key=ac_energy, reverse=True)[:FEW]))
 
 
 def _with_sign(record: FitRecord, place: int) -> FitRecord:

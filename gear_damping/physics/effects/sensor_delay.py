@@ -11,12 +11,19 @@ from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.record_filter import filtered
 from gear_damping.physics.terms import Recording, Sensor, Values
 
+# of the time in which a rig without a spring forgets its motion: that of the slowest low-pass that is tried there (two
+# poles at a cutoff of one over it delay by 2**.5 / (2 pi)); a longer one turns drive and answer against each other
+LONGEST = 0.225
 MODES = 3  # powers of time by which a short beginning is free
 
 
 def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
     """None of a free swing: it is the same one begun earlier, and the unknown beginning would take what dies away."""
-    return () if rig.swings_freely else (Recipe({"delay": 0.05}),)
+    if rig.swings_freely:
+        return ()
+    coasts = rig.values.get("natural_frequency", 1.0) == 0
+    longest = LONGEST * (rig.values.get("characteristic_time", 0.0) or 1.0)
+    return (Recipe({"delay": 0.05}, within={"sensor_delay.delay": (-longest, longest)} if coasts else {}),)
 
 
 class SensorDelay(Sensor):
