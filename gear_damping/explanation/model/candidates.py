@@ -350,4 +350,6 @@ def _elements(kind: type[Effect], name: str, size: float, given: Given, recipe: 
     if name in recipe.phases and not _has_levels(kind):
         return [FreeParameter(flat, value, abs(size))]
     expected = abs(size) if _has_levels(kind) else inf  # only its product with the levels acts
-    return [FreeParameter(flat, value, abs(size), lower=declared.lower, upper=declared.upper, deviation=expected)]
+    low, high = recipe.within.get(flat, (-inf, inf))
+    lower, upper = max(declared.lower, low), min(declared.upper, high)
+    return [FreeParameter(flat, value, abs(size), lower=lower, upper=upper, deviation=expected)]
