@@ -23,6 +23,7 @@ from gear_damping.units import behind
 
 _SAMPLES, _SHARE, _RATIO = 5, 1e-3, 6  # at the extreme: at least, of all samples, times those at the level beside it
 _HELD = 5e-3  # share of steps that are zero elsewhere, from which a signal holds its values
+_MOSTLY_HELD, _NINE_OF_TEN = 0.5, 0.9  # share of steps that are zero, from which every value stays; of its stays
 _RESTLESS = 0.2  # share of moves against the one before, from which noise or a fast signal crosses many levels
 _LEAST, _MOST = 8, 200  # samples that a parabola is laid through
 _NEAR, _LEAST_NEAR = 4, 32  # part of them next to a plateau, and samples of it at least
@@ -76,13 +77,26 @@ def _would_go_on(outward: NDArray, at: NDArray) -> bool:
     lengths = [last + 1 - first for first, last in plateaus]
     moves = np.sign(steps[steps != 0])
     restless = np.sum(moves[1:] != moves[:-1]) > _RESTLESS * moves.size
-    if sum(length > 1 for length in lengths) > 1 and (restless or (held < _HELD and np.median(lengths) < _LEAST)):
+    usual = _usual_stay(outward[~at]) if held >= _MOSTLY_HELD else 1.0
+    if sum(length > usual for length in lengths) > 1 and (restless or (held < _HELD and np.median(lengths) < _LEAST)):
         return True
     step = max(step_of(outward), _held_step(outward, at)) if held >= _HELD else step_of(outward)
     cut = [length for length, plateau in zip(lengths, plateaus, strict=True) if _cut(outward, *plateau, step)]
     if sum(cut) > _BEYOND * int(at.sum()):
         return True
-    return sum(last + 1 - first for first, last in plateaus if is_cut(outward, first, last, step)) > _BEYOND * at.sum()
+    bent = [length for length, plateau in zip(lengths, plateaus, strict=True) if _is_bent(outward, *plateau, step)]
+    return sum(bent) > _BEYOND * at.sum()
+
+
+def _usual_stay(values: NDArray) -> float:
+    """Samples for which a value stays that a logger reads more often than it is measured: nine of ten at most."""
+    ends = np.flatnonzero(np.r_[True, np.diff(values) != 0, True])
+    return float(np.quantile(np.diff(ends), _NINE_OF_TEN))
+
+
+def _is_bent(outward: NDArray, first: int, last: int, step: float) -> bool:
+    """Whether the motion beside a plateau bends beyond it; none at the beginning, where a drive may move what rests."""
+    return first >= _LEAST and is_cut(outward, first, last, step)
 
 
 def _held_step(outward: NDArray, at: NDArray) -> float:

@@ -124,6 +124,23 @@ def test_a_whole_swing_of_few_steps_is_not_clipped(period, levels):
         assert clipped_at(np.round(swing)) is None, damping
 
 
+def test_what_rests_until_a_drive_moves_it_off_is_not_clipped():
+    """A motor that winds a load: half of a record at rest, then a lag of a sample to its speed."""
+    fall = [36, 172, 349, 555, 769, 986, 1207, 1421, 1638, 1860, 2077, 2299, 2517, 2738, 2958, 3179, 3395, 3617, 3836]
+    assert clipped_at(5013.0 - np.r_[np.zeros(24), fall]) is None
+
+
+@pytest.mark.parametrize(("reads", "found"), [(1, None), (4, "maximum")])
+def test_a_speed_that_is_read_more_often_than_measured_is_clipped_where_it_stays_for_longer(reads, found):
+    """Of an axis each speed was read ten to twenty times, and the highest one, of a coarse counter, in many places."""
+    rng = np.random.default_rng(3)
+    speed = rng.uniform(0, 8, 300)
+    highest = np.arange(0, 300, 20)
+    speed[(highest[:, None] + np.arange(reads)).ravel()] = 10
+    said = clipped_at(np.repeat(speed, rng.integers(10, 20, speed.size)))
+    assert (said and said[0]) == found
+
+
 def test_a_torque_that_steps_or_ramps_and_holds_is_not_clipped(bench):
     ramp = np.interp(np.arange(400), [0, 100, 200, 399], [100, 100, 150, 150])
     for torque in (ramp, np.where(np.arange(400) < 200, 100.0, 150.0)):
