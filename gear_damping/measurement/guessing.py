@@ -60,6 +60,10 @@ _OSCILLATOR_NAMES = (
 )
 _COMPONENT = re.compile(r"[/.]([xyzw])$")  # of what stands before it in a path: `/imu/angular_velocity/x`
 _OF_NO_MOTION = re.compile(r"magnet|orient|quat|temperat")  # what has components and is no channel by these
+_SET_POINT = re.compile(
+    r"(^|[^a-z])(cmd|command(ed)?|set_?point|set|target|desired|ref(erence)?|soll(wert)?|consigna?e?)($|[^a-z])"
+)
+_MEASURED = ("velocity", "acceleration", "displacement", "speed", "angle")  # of which a set point is none
 _LETTERED = re.compile(r"(ch(an(nel)?)?|kanal|input|port|probe)[ ._-]*[a-d]")  # of an oscilloscope, and no quantity
 _OF_FREQUENCY = ("Hz", "kHz", "MHz")  # an axis of a spectrum, or what an exciter was set to
 _OTHERWISE = {"torque": "N*m", "tacho": "V"}
@@ -282,7 +286,12 @@ def _by_name(column: Column, names: Sequence[tuple[str, str]]) -> str | None:
     component = _COMPONENT.search(_bare(column))
     if component and _OF_NO_MOTION.search(plain):
         return None
-    found = (channel for channel, words in names if re.search(words, plain) or re.search(words, whole))
+    asked = _MEASURED if _SET_POINT.search(plain) else ()
+    found = (
+        channel
+        for channel, words in names
+        if channel not in asked and (re.search(words, plain) or re.search(words, whole))
+    )
     alone = (channel for channel, words in names if component and re.search(words, component[1]))
     return next(found, None) or next(alone, None)
 
@@ -379,13 +388,21 @@ def _counts_between(counter: Column, pulses: Column) -> tuple[int, int] | None:
 
 
 def _one_each(listed: list[Guess]) -> list[Guess]:
-    """One column for each channel: the one that stands out most from its noise and moves most to and fro."""
+    """One column for each channel: the one measured that stands out most from its noise and moves most to and fro."""
     best: dict[str, Guess] = {}
     for guess in listed:
         held = best.get(guess.channel) if guess.channel else None
-        if guess.channel and (held is None or _prominence(guess.column) > _CLEARLY * _prominence(held.column)):
+        if guess.channel and (held is None or _is_before(guess, held)):
             best[guess.channel] = guess
     return [replace(guess, used=guess.channel is not None and best[guess.channel] is guess) for guess in listed]
+
+
+def _is_before(guess: Guess, held: Guess) -> bool:
+    """Whether it stands out more than another of its channel; what was measured does before what was asked for."""
+    is_asked, other = (bool(_SET_POINT.search(_plain(one.column))) for one in (guess, held))
+    if is_asked != other:
+        return other
+    return _prominence(guess.column) > _CLEARLY * _prominence(held.column)
 
 
 def _prominence(column: Column) -> float:

@@ -27,6 +27,15 @@ def test_dropped_samples_are_counted_where_they_are(bench):
     assert record.sampling_rate == pytest.approx(20000 * 395 / 399)  # a grid of as many samples over the same time
 
 
+def test_of_many_gaps_the_longest_is_told(bench):
+    lost = np.r_[20, 60, 100, 140, 180, 220, 221, 222, 223, 260]
+    keep = np.setdiff1d(np.arange(400), lost)
+    bench.columns = {name: values[keep] for name, values in bench.columns.items()}
+    (finding,) = [one for one in bench.load().records[0].findings if one.kind == "dropped_samples"]
+    row = int(np.flatnonzero(keep == 224)[0])
+    assert f"and others, the longest before row {row} (at" in finding.message
+
+
 def test_stamps_that_the_values_contradict_are_a_problem(bench):
     bench.columns["t"] = bench.columns["t"] + 0.1 / 20000 * np.sin(np.arange(400))
     bench.columns["theta1"] = 188.5 * bench.columns["t"]
