@@ -61,7 +61,8 @@ _OSCILLATOR_NAMES = (
 _COMPONENT = re.compile(r"[/.]([xyzw])$")  # of what stands before it in a path: `/imu/angular_velocity/x`
 _OF_NO_MOTION = re.compile(r"magnet|orient|quat|temperat")  # what has components and is no channel by these
 _SET_POINT = re.compile(
-    r"(^|[^a-z])(cmd|command(ed)?|set_?point|set|target|desired|ref(erence)?|soll(wert)?|consigna?e?)($|[^a-z])"
+    r"(^|[^a-z])(cmd|command(ed)?|set[ _-]?point|target|desired|ref(erence)?|soll(wert)?|consign[ae])($|[^a-z])"
+    r"|[ _]set$"
 )
 _MEASURED = ("velocity", "acceleration", "displacement", "speed", "angle")  # of which a set point is none
 _LETTERED = re.compile(r"(ch(an(nel)?)?|kanal|input|port|probe)[ ._-]*[a-d]")  # of an oscilloscope, and no quantity
@@ -286,7 +287,7 @@ def _by_name(column: Column, names: Sequence[tuple[str, str]]) -> str | None:
     component = _COMPONENT.search(_bare(column))
     if component and _OF_NO_MOTION.search(plain):
         return None
-    asked = _MEASURED if _SET_POINT.search(plain) else ()
+    asked = _MEASURED if _SET_POINT.search(whole) else ()
     found = (
         channel
         for channel, words in names
@@ -399,7 +400,7 @@ def _one_each(listed: list[Guess]) -> list[Guess]:
 
 def _is_before(guess: Guess, held: Guess) -> bool:
     """Whether it stands out more than another of its channel; what was measured does before what was asked for."""
-    is_asked, other = (bool(_SET_POINT.search(_plain(one.column))) for one in (guess, held))
+    is_asked, other = (bool(_SET_POINT.search(_bare(one.column).split("/")[-1])) for one in (guess, held))
     if is_asked != other:
         return other
     return _prominence(guess.column) > _CLEARLY * _prominence(held.column)

@@ -29,7 +29,7 @@ def sought(nominal, scores, leaves, made):
 
     with (
         patch.object(single, "_unshaped", lambda _: (rough, scores)),
-        patch.object(single, "flanks_part", lambda evidence: False),
+        patch.object(single, "flanks_change", lambda evidence: False),
         patch.object(single, "stay_closed", lambda evidence: True),
         patch.object(type(known), "full_fits", full_fits),
     ):

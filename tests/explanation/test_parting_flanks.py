@@ -204,6 +204,21 @@ def test_a_mesh_that_carries_nothing_for_long_shows_it_wherever_the_zero_lies(at
         assert flanks_part(replace(evidence, fit=(one,), noise=0.0)) is parted
 
 
+@pytest.mark.parametrize(
+    ("part", "crossed", "teeth", "change"),
+    [
+        (True, [False], True, True),
+        (False, [False, True], True, True),
+        (False, [False], True, False),
+        (False, None, False, False),
+    ],
+)
+def test_flanks_change_where_they_part_or_an_error_of_any_zero_crosses_a_gap(part, crossed, teeth, change, monkeypatch):
+    monkeypatch.setattr(parting_flanks, "flanks_part", lambda evidence: part)
+    monkeypatch.setattr(parting_flanks, "are_crossed", lambda evidence: crossed)
+    assert parting_flanks.flanks_change(SimpleNamespace(has=lambda trait: teeth)) is change
+
+
 def shafts(evidence):
     """Base radius and moment of inertia of pinion and gear."""
     known = evidence.known.values

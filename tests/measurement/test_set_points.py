@@ -39,3 +39,8 @@ def test_a_command_is_the_input_where_none_was_measured(tmp_path):
     found = declared(tmp_path, command=command, position=np.cumsum(command) / 100)
     assert found["force"] == "command"
     assert found["displacement"] == "position"
+
+
+def test_a_data_set_is_no_set_point(tmp_path):
+    found = declared(tmp_path, **{"Position Set 1": np.exp(-0.1 * T) * np.sin(9 * T)})
+    assert found["displacement"] == "Position Set 1"

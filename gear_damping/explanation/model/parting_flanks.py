@@ -54,6 +54,11 @@ def flanks_part(evidence: Evidence) -> bool:
     return evidence.has(Trait.TEETH) and (_crosses_zero(evidence) or _is_unloaded(evidence))
 
 
+def flanks_change(evidence: Evidence) -> bool:
+    """Whether flanks part, or an error whose zero nobody knows goes farther than over closed ones."""
+    return flanks_part(evidence) or (evidence.has(Trait.TEETH) and any(are_crossed(evidence)))
+
+
 def _crosses_zero(evidence: Evidence) -> bool:
     """Whether a transmission error that was measured from its zero on shows flanks that part, well beyond the noise.
 

@@ -5,17 +5,10 @@ from dataclasses import replace
 from math import inf
 
 from gear_damping.explanation.evidence.excess import is_settled
-from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Outcome, settled_at
 from gear_damping.explanation.model.nominal_gear_pair import SHAPE, shaped
-from gear_damping.explanation.model.parting_flanks import (
-    are_crossed,
-    are_missed,
-    flanks_part,
-    stay_closed,
-    with_parting_flanks,
-)
+from gear_damping.explanation.model.parting_flanks import are_missed, flanks_change, stay_closed, with_parting_flanks
 from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.levels_alone import levels_alone
 from gear_damping.explanation.trials.refit import Refit, again, compared
@@ -57,7 +50,7 @@ def _first_fits(state: State) -> tuple[Refit, ...]:
     """
     bench = state.bench
     fits = [again(refit, state.nominal, bench.evidence, bench.solver) for refit in state.carried_on]
-    is_parted = not fits and (flanks_part(bench.evidence) or _are_crossed(bench.evidence))
+    is_parted = not fits and flanks_change(bench.evidence)
     if is_parted:  # a model whose flanks stay together is no place to begin
         fits = _from_what_is_stated(fits, state)
         if _best(fits, state):
@@ -77,11 +70,6 @@ def _first_fits(state: State) -> tuple[Refit, ...]:
     fits += [] if is_parted else _from_what_is_stated(fits, state)
     fits += _rivals_from_the_shape(fits, state) if is_bent and not is_shaped else []
     return tuple(sorted(fits, key=lambda fit: fit.outcome.left_out_cost))
-
-
-def _are_crossed(evidence: Evidence) -> bool:
-    """Whether flanks change in a record, which a zero of the error that nobody knows does not hide."""
-    return evidence.has(Trait.TEETH) and any(are_crossed(evidence))
 
 
 def _promises_all(state: State) -> bool:

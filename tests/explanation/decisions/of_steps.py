@@ -85,7 +85,7 @@ def first_place_to_begin(settings: SearchSettings):
         with (
             patch.object(single, "_unshaped", places_of["unshaped"]),
             patch.object(single, "_shaped", places_of["shaped"]),
-            patch.object(single, "flanks_part", lambda evidence: False),
+            patch.object(single, "flanks_change", lambda evidence: False),
             patch.object(single, "stay_closed", lambda evidence: True),
         ):
             single._first_fits(state)
