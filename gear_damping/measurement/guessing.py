@@ -281,13 +281,13 @@ def is_linear_speed(channel: str | None, unit: str) -> bool:
 
 
 def _by_name(column: Column, names: Sequence[tuple[str, str]]) -> str | None:
-    plain, whole = _plain(column), _bare(column).split("/")[-1]
+    plain, whole = _plain(column), _whole(column)
     if _LETTERED.fullmatch(whole):
         return None
     component = _COMPONENT.search(_bare(column))
     if component and _OF_NO_MOTION.search(plain):
         return None
-    asked = _MEASURED if _SET_POINT.search(whole) else ()
+    asked = _MEASURED if _is_asked_for(column) else ()
     found = (
         channel
         for channel, words in names
@@ -295,6 +295,16 @@ def _by_name(column: Column, names: Sequence[tuple[str, str]]) -> str | None:
     )
     alone = (channel for channel, words in names if component and re.search(words, component[1]))
     return next(found, None) or next(alone, None)
+
+
+def _is_asked_for(column: Column) -> bool:
+    """Whether a name says that it is a set point."""
+    return bool(_SET_POINT.search(_whole(column)))
+
+
+def _whole(column: Column) -> str:
+    """A name with all its words, without the path before it."""
+    return _bare(column).split("/")[-1]
 
 
 def _bare(column: Column) -> str:
@@ -400,7 +410,7 @@ def _one_each(listed: list[Guess]) -> list[Guess]:
 
 def _is_before(guess: Guess, held: Guess) -> bool:
     """Whether it stands out more than another of its channel; what was measured does before what was asked for."""
-    is_asked, other = (bool(_SET_POINT.search(_bare(one.column).split("/")[-1])) for one in (guess, held))
+    is_asked, other = (_is_asked_for(one.column) for one in (guess, held))
     if is_asked != other:
         return other
     return _prominence(guess.column) > _CLEARLY * _prominence(held.column)

@@ -138,9 +138,9 @@ def _dropped(lost: NDArray, stamps: NDArray, gaps: NDArray, first: int) -> Findi
         rows = ", ".join(str(gap + 1 + first) for gap in gaps[:_LISTED].tolist())
         digits = _digits_for(float(behind[0]), float(np.median(np.diff(stamps))))
         times = ", ".join(f"{time:.{digits}g}" for time in behind[:_LISTED].tolist())
-        longest = int(np.argmax(lost))
-        at = f"{behind[longest]:.{digits}g} s" if gaps.size > _LISTED else ""
-        more = f" and others, the longest before row {gaps[longest] + 1 + first} (at {at})" if at else ""
+        most = int(np.argmax(lost))
+        longest = f"the longest before row {gaps[most] + 1 + first} (at {behind[most]:.{digits}g} s)"
+        more = f" and others, {longest}" if gaps.size > _LISTED else ""
         message = (
             f"about {lost.sum():.12g} sample(s) were dropped in {gaps.size} gap(s), before row(s) {rows} of the file "
             f"(at {times} s){more}; use slices or windows between the gaps"

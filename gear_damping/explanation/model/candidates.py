@@ -276,11 +276,17 @@ def _freed(declared: Parameter, flat: str, given: Given, within: Mapping[str, tu
 
     The logarithm of a power is linear in its exponent.
     """
-    value, (low, high) = float(given[flat]), within.get(flat, (-inf, inf))
+    value = float(given[flat])
     if declared.lower < 0:
         return FreeParameter(flat, value, ANGLE_SCALE)
-    lower, upper = max(declared.lower, low), min(declared.upper, high)
+    lower, upper = _narrowed(declared, flat, within)
     return FreeParameter(flat, value, logarithmic=declared.name != EXPONENT, lower=lower, upper=upper)
+
+
+def _narrowed(declared: Parameter, flat: str, within: Mapping[str, tuple[float, float]]) -> tuple[float, float]:
+    """The declared bounds of a parameter, or the narrower ones of a recipe."""
+    low, high = within.get(flat, (-inf, inf))
+    return max(declared.lower, low), min(declared.upper, high)
 
 
 def _label(kind: type[Effect], recipe: Recipe) -> str:
@@ -350,6 +356,5 @@ def _elements(kind: type[Effect], name: str, size: float, given: Given, recipe: 
     if name in recipe.phases and not _has_levels(kind):
         return [FreeParameter(flat, value, abs(size))]
     expected = abs(size) if _has_levels(kind) else inf  # only its product with the levels acts
-    low, high = recipe.within.get(flat, (-inf, inf))
-    lower, upper = max(declared.lower, low), min(declared.upper, high)
+    lower, upper = _narrowed(declared, flat, recipe.within)
     return [FreeParameter(flat, value, abs(size), lower=lower, upper=upper, deviation=expected)]

@@ -159,10 +159,8 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
     if known.any_figures:
         return _not_established(found, before, known, NO_FIGURE.format(known.any_figures))
     is_at_end = any(found.is_at_bound(cause) for cause in found.accepted)
-    if known.is_one is False and is_at_end:  # one that bends to each record, as far as it can
-        return _not_established(found, before, known, OTHER_SIZES)
-    if is_at_end and found.beyond_sensor(found.outcome).misfit > settings.small_misfit:
-        return _not_established(found, before, known, AT_BOUND_ABOVE_NOISE)
+    if is_at_end and (why := _at_its_end(found, known)):
+        return _not_established(found, before, known, why)
     is_part = known.whole < settings.taken_by_one
     is_unsteady = before.misfit < settings.random_misfit  # held-out: less noise
     if is_part and is_unsteady:
@@ -195,6 +193,14 @@ def _is_none(before: Excess, after: Excess, known: Known) -> str:
     if known.stands_in or known.predicts_worse:
         return known.stands_in or NO_BETTER
     return TOO_SHORT if known.is_short and not before.significant else ""
+
+
+def _at_its_end(found: State, known: Known) -> str:
+    """Why a cause that has run into the end of what it can be is none; empty where it may be one."""
+    if known.is_one is False:  # it bends to each record, as far as it can
+        return OTHER_SIZES
+    above_noise = found.beyond_sensor(found.outcome).misfit > found.bench.settings.small_misfit
+    return AT_BOUND_ABOVE_NOISE if above_noise else ""
 
 
 def _beside_a_rest(before: Excess, after: Excess, known: Known) -> str:
