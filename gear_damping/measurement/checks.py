@@ -18,6 +18,7 @@ from gear_damping.measurement.out_of_range import CONTINUOUS, out_of_range
 from gear_damping.measurement.overflow import overflowed
 from gear_damping.measurement.record import Channel, Finding
 from gear_damping.measurement.resolution import step_of
+from gear_damping.measurement.staircase import runs_of
 from gear_damping.measurement.vocabulary import INPUTS
 from gear_damping.units import behind
 
@@ -90,8 +91,7 @@ def _would_go_on(outward: NDArray, at: NDArray) -> bool:
 
 def _usual_stay(values: NDArray) -> float:
     """Samples for which a value stays that a logger reads more often than it is measured: nine of ten at most."""
-    ends = np.flatnonzero(np.r_[True, np.diff(values) != 0, True])
-    return float(np.quantile(np.diff(ends), _NINE_OF_TEN))
+    return float(np.quantile(runs_of(values), _NINE_OF_TEN))
 
 
 def _is_bent(outward: NDArray, first: int, last: int, step: float) -> bool:

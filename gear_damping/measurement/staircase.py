@@ -39,7 +39,12 @@ def leaps_from_rests(values: NDArray[np.float64]) -> bool:
 
 def _usual_run(values: NDArray[np.float64]) -> float:
     """Median count of samples for which a series stays at a value."""
-    return float(np.median(np.diff(np.flatnonzero(np.concatenate([[True], np.diff(values) != 0, [True]])))))
+    return float(np.median(runs_of(values)))
+
+
+def runs_of(values: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Counts of samples for which a series (time,) stays at a value, in order."""
+    return np.diff(np.flatnonzero(np.concatenate([[True], np.diff(values) != 0, [True]])))
 
 
 def rests_between_jumps(values: NDArray[np.float64]) -> bool:

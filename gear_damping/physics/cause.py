@@ -89,6 +89,11 @@ class Rig:
         return trait in self.traits
 
     @property
+    def coasts(self) -> bool:
+        """Whether no spring gives its motion a frequency."""
+        return self.values.get("natural_frequency", 1.0) == 0
+
+    @property
     def swings_freely(self) -> bool:
         """Whether nothing that was measured moves it: it dies away about its place of rest."""
         return self.has(Trait.REST) and not self.inputs

@@ -21,9 +21,8 @@ def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
     """None of a free swing: it is the same one begun earlier, and the unknown beginning would take what dies away."""
     if rig.swings_freely:
         return ()
-    coasts = rig.values.get("natural_frequency", 1.0) == 0
     longest = LONGEST * (rig.values.get("characteristic_time", 0.0) or 1.0)
-    return (Recipe({"delay": 0.05}, within={"sensor_delay.delay": (-longest, longest)} if coasts else {}),)
+    return (Recipe({"delay": 0.05}, within={"sensor_delay.delay": (-longest, longest)} if rig.coasts else {}),)
 
 
 class SensorDelay(Sensor):

@@ -22,13 +22,12 @@ def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
     """
     if rig.swings_freely:
         return ()
-    coasts = rig.values.get("natural_frequency", 1.0) == 0
     slowest = SLOWEST / (rig.values.get("characteristic_time", 0.0) or 1.0)
-    within = {"sensor_lowpass.cutoff": (slowest, inf)} if coasts else {}
+    within = {"sensor_lowpass.cutoff": (slowest, inf)} if rig.coasts else {}
     return tuple(
         Recipe({"cutoff": size}, non_nested=True, options={"order": order}, within=within)
         for order in (1, 2)
-        for size in (COASTING if coasts else SIZES)
+        for size in (COASTING if rig.coasts else SIZES)
     )
 
 
