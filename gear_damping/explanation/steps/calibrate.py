@@ -40,7 +40,7 @@ from gear_damping.identification.observation import MESH_PHASE
 from gear_damping.identification.oscillator.fit import fit_oscillator
 from gear_damping.identification.oscillator.linear_model import DAMPING, TIME, linear_model, linear_oscillator, mass_of
 from gear_damping.identification.output_error.least_squares import NONE, Rounds
-from gear_damping.identification.output_error.records import SEPARATOR, FreeParameter
+from gear_damping.identification.output_error.records import SEPARATOR, FitRecord, FreeParameter
 from gear_damping.identification.output_error.segments import shortened
 from gear_damping.identification.time_scale import characteristic_time
 from gear_damping.physics.systems.traits import Trait, by_trait
@@ -230,7 +230,7 @@ def _realigned(
     own best angles, stiffness and damping lead astray, to a fit that leaves more than a poorer model does.
     """
     is_told = len(evidence.fit) < 2 or (evidence.has_index and evidence.mesh_index)
-    if is_told or flanks_part(evidence) or nominal.fitted.cost < POORLY * _moved(evidence):
+    if is_told or flanks_part(evidence) or _follows_each(nominal, evidence):
         return evidence, rough, nominal
     apart = with_own_angles(evidence) if evidence.has_index else evidence
     for wave in begun_aligned(apart, nominal.fitted.cost, solver):
@@ -240,10 +240,19 @@ def _realigned(
     return evidence, rough, nominal
 
 
-def _moved(evidence: Evidence) -> float:
-    """Sum of the squares of all channels about their means, as residuals count."""
-    series = [record.weight * record.stacked.reshape(len(record.channels), -1) for record in evidence.fitted]
-    return sum(float((one - one.mean(1, keepdim=True)).square().sum()) for one in series)
+def _follows_each(nominal: Outcome, evidence: Evidence) -> bool:
+    """Whether a fit leaves little of what moved in every record: what a lively one leaves hides the quiet ones."""
+    return all(
+        float(residual.square().sum()) - noise < POORLY * (_moved(record) - noise)
+        for residual, record in zip(nominal.fit_residuals, evidence.fitted, strict=True)
+        for noise in [len(record.stacked) * evidence.noise**2]
+    )
+
+
+def _moved(record: FitRecord) -> float:
+    """Sum of the squares of a record's channels about their means, as residuals count."""
+    series = record.weight * record.stacked.reshape(len(record.channels), -1)
+    return float((series - series.mean(1, keepdim=True)).square().sum())
 
 
 def _on_a_part(evidence: Evidence) -> Evidence:
